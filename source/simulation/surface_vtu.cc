@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: the shell's surface as VTU files, and a time series of them as a PVD file.
+
+#include <tanktread/base/exceptions.h>
+#include <tanktread/simulation/surface_vtu.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <fstream>
+#include <iomanip>
+#include <limits>
+#include <ostream>
+#include <sstream>
+#include <stdexcept>
+
+namespace tanktread
+{
+  namespace
+  {
+    /** Writes beside `file` and renames, which POSIX does at once: a reader, or a kill, sees the old file or the new one. */
+    void
+    replace_file(const std::string &file, const std::string &content)
+    {
+      const std::string unfinished = file + ".part";
+      std::ofstream     out(unfinished, std::ios::binary);
+      out << content;
+      out.close();
+      if (!out || std::rename(unfinished.c_str(), file.c_str()) != 0)
+        throw InputError("Cannot write the file '" + file + "': check that its folder exists, may be written to and has space left.");
+    }
+
+    std::string
+    base64(const std::string &bytes)
+    {
+      static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+      std::string       text;
+      text.reserve((bytes.size() + 2) / 3 * 4);
+      for (std::size_t i = 0; i < bytes.size(); i += 3)
+        {
+          const std::size_t n     = std::min<std::size_t>(3, bytes.size() - i);
+          std::uint32_t     group = 0;
+          for (std::size_t k = 0; k < 3; ++k)
+            group = group << 8 | (k < n ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+          for (std::size_t k = 0; k < 4; ++k)
+            text += k <= n ? digits[group >> (18 - 6 * k) & 63u] : '=';
+        }
+      return text;
+    }
+
+    /** One DataArray. VTK wants the number of bytes (header_type of the file) in front of them, both in one base64 text. */
+    template <typename Number>
+    void
+    write_array(std::ostream &out, const std::string &type, const std::string &name, const std::size_t n_components, const Number *values, const std::size_t n)
+    {
+      const std::uint64_t n_bytes = n * sizeof(Number);
+      std::string         bytes(reinterpret_cast<const char *>(&n_bytes), sizeof(n_bytes));
+      bytes.append(reinterpret_cast<const char *>(values), n_bytes);
+      out << "<DataArray type=\"" << type << "\" Name=\"" << name << "\" NumberOfComponents=\"" << n_components << "\" format=\"binary\">" << base64(bytes)
+          << "</DataArray>\n";
+    }
+
+    void
+    check_arguments(const ControlPoints                                        &positions,
+                    const std::vector<std::array<int, 3>>                      &faces,
+                    const std::vector<std::pair<std::string, Eigen::MatrixXd>> &point_fields)
+    {
+      for (const auto &face : faces)
+        for (const int vertex : face)
+          if (vertex < 0 || vertex >= positions.rows())
+            throw std::invalid_argument("write_surface_vtu: a face has vertex " + std::to_string(vertex) + ", there are " + std::to_string(positions.rows()) +
+                                        " positions");
+      for (const auto &[name, values] : point_fields)
+        if (values.rows() != positions.rows() || (values.cols() != 1 && values.cols() != 3))
+          throw std::invalid_argument("write_surface_vtu: field '" + name + "' is " + std::to_string(values.rows()) + " x " + std::to_string(values.cols()) +
+                                      ", wanted " + std::to_string(positions.rows()) + " x 1 or x 3");
+    }
+
+    void
+    write_cells(std::ostream &out, const std::vector<std::array<int, 3>> &faces)
+    {
+      constexpr std::uint8_t          vtk_triangle = 5;
+      std::vector<std::int32_t>       connectivity, offsets;
+      const std::vector<std::uint8_t> types(faces.size(), vtk_triangle);
+      for (const auto &face : faces)
+        {
+          connectivity.insert(connectivity.end(), face.begin(), face.end());
+          offsets.push_back(static_cast<std::int32_t>(connectivity.size()));
+        }
+      out << "<Cells>\n";
+      write_array(out, "Int32", "connectivity", 1, connectivity.data(), connectivity.size());
+      write_array(out, "Int32", "offsets", 1, offsets.data(), offsets.size());
+      write_array(out, "UInt8", "types", 1, types.data(), types.size());
+      out << "</Cells>\n";
+    }
+
+    const char *
+    byte_order()
+    {
+      const std::uint16_t one = 1;
+      return *reinterpret_cast<const unsigned char *>(&one) == 1 ? "LittleEndian" : "BigEndian";
+    }
+  } // namespace
+
+
+
+  void
+  write_surface_vtu(const std::string                                          &file,
+                    const ControlPoints                                        &positions,
+                    const std::vector<std::array<int, 3>>                      &faces,
+                    const std::vector<std::pair<std::string, Eigen::MatrixXd>> &point_fields)
+  {
+    check_arguments(positions, faces, point_fields);
+    std::ostringstream out;
+    out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"" << byte_order() << "\" header_type=\"UInt64\">\n"
+        << "<UnstructuredGrid>\n<Piece NumberOfPoints=\"" << positions.rows() << "\" NumberOfCells=\"" << faces.size() << "\">\n<Points>\n";
+    write_array(out, "Float64", "Points", 3, positions.data(), positions.size());
+    out << "</Points>\n";
+    write_cells(out, faces);
+    out << "<PointData>\n";
+    for (const auto &[name, values] : point_fields)
+      {
+        const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> by_points = values;
+        write_array(out, "Float64", name, by_points.cols(), by_points.data(), by_points.size());
+      }
+    out << "</PointData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
+    replace_file(file, out.str());
+  }
+
+
+
+  PvdFile::PvdFile(std::string file)
+    : file(std::move(file))
+  {}
+
+
+
+  void
+  PvdFile::add(const double time, const std::string &data_file)
+  {
+    std::ostringstream entry;
+    entry << std::setprecision(std::numeric_limits<double>::digits10) << "<DataSet timestep=\"" << time << "\" group=\"\" part=\"0\" file=\"" << data_file
+          << "\"/>\n";
+    entries += entry.str();
+    replace_file(file,
+                 "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"" + std::string(byte_order()) + "\">\n<Collection>\n" +
+                   entries + "</Collection>\n</VTKFile>\n");
+  }
+} // namespace tanktread

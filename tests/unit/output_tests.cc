@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: tests of the surface's VTU files and their time series.
+
+#include <tanktread/base/exceptions.h>
+#include <tanktread/simulation/surface_vtu.h>
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <stdexcept>
+
+using namespace tanktread;
+
+namespace
+{
+  struct Output : testing::Test
+  {
+    void
+    SetUp() override
+    {
+      folder = std::filesystem::temp_directory_path() / ("tanktread_output_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+      std::filesystem::remove_all(folder);
+      std::filesystem::create_directories(folder);
+    }
+
+    void
+    TearDown() override
+    {
+      std::filesystem::remove_all(folder);
+    }
+
+    std::string
+    path(const std::string &name) const
+    {
+      return (folder / name).string();
+    }
+
+    std::string
+    content(const std::string &name) const
+    {
+      std::ifstream in(folder / name, std::ios::binary);
+      return {std::istreambuf_iterator<char>(in), {}};
+    }
+
+    std::filesystem::path folder;
+  };
+
+  /** An octahedron: small enough to be checked number by number. */
+  ControlPoints
+  octahedron()
+  {
+    ControlPoints x(6, 3);
+    x << 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1;
+    return x;
+  }
+
+  const std::vector<std::array<int, 3>> octahedron_faces = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+
+  std::string
+  decode(const std::string &text)
+  {
+    const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string       bytes;
+    unsigned int      bits = 0, n_bits = 0;
+    for (const char c : text)
+      {
+        const std::size_t digit = digits.find(c);
+        if (digit == std::string::npos)
+          break;
+        bits = bits << 6 | static_cast<unsigned int>(digit);
+        n_bits += 6;
+        if (n_bits >= 8)
+          bytes += static_cast<char>(bits >> (n_bits -= 8) & 255u);
+      }
+    return bytes;
+  }
+
+  /** The numbers of the DataArray `name`; checks type, number of components and the byte count in front of the data. */
+  template <typename Number>
+  std::vector<Number>
+  array(const std::string &file, const std::string &name, const std::string &type, const int n_components)
+  {
+    const std::string tag   = "<DataArray type=\"" + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" + std::to_string(n_components) + "\" format=\"binary\">";
+    const std::size_t start = file.find(tag);
+    if (start == std::string::npos)
+      throw std::runtime_error("no array " + tag);
+    const std::string text  = file.substr(start + tag.size(), file.find('<', start + tag.size()) - start - tag.size());
+    const std::string bytes = decode(text);
+    std::uint64_t     n_bytes;
+    std::memcpy(&n_bytes, bytes.data(), sizeof(n_bytes));
+    EXPECT_EQ(n_bytes + sizeof(n_bytes), bytes.size());
+    EXPECT_EQ(text.size() % 4, 0u);
+    std::vector<Number> values(n_bytes / sizeof(Number));
+    std::memcpy(values.data(), bytes.data() + sizeof(n_bytes), n_bytes);
+    return values;
+  }
+} // namespace
+
+TEST_F(Output, VtuHoldsPointsCellsAndFieldsBitForBit)
+{
+  const ControlPoints   x = octahedron() / 3.0;
+  const Eigen::MatrixXd scalar = Eigen::VectorXd::LinSpaced(6, -1e-300, 0.1), vector = x.array().sin().matrix();
+  write_surface_vtu(path("s.vtu"), x, octahedron_faces, {{"curvature", scalar}, {"velocity", vector}});
+  const std::string file = content("s.vtu");
+
+  EXPECT_NE(file.find("<Piece NumberOfPoints=\"6\" NumberOfCells=\"8\">"), std::string::npos);
+  const auto points = array<double>(file, "Points", "Float64", 3), curvature = array<double>(file, "curvature", "Float64", 1),
+             velocity = array<double>(file, "velocity", "Float64", 3);
+  ASSERT_EQ(points.size(), 18u);
+  ASSERT_EQ(velocity.size(), 18u);
+  ASSERT_EQ(curvature.size(), 6u);
+  for (int i = 0; i < 6; ++i)
+    {
+      EXPECT_EQ(curvature[i], scalar(i, 0));
+      for (int c = 0; c < 3; ++c)
+        {
+          EXPECT_EQ(points[3 * i + c], x(i, c));
+          EXPECT_EQ(velocity[3 * i + c], vector(i, c));
+        }
+    }
+  const auto connectivity = array<std::int32_t>(file, "connectivity", "Int32", 1), offsets = array<std::int32_t>(file, "offsets", "Int32", 1);
+  const auto types = array<std::uint8_t>(file, "types", "UInt8", 1);
+  ASSERT_EQ(connectivity.size(), 24u);
+  EXPECT_EQ(types, std::vector<std::uint8_t>(8, 5));
+  for (int f = 0; f < 8; ++f)
+    {
+      EXPECT_EQ(offsets[f], 3 * (f + 1));
+      for (int v = 0; v < 3; ++v)
+        EXPECT_EQ(connectivity[3 * f + v], octahedron_faces[f][v]);
+    }
+}
+
+TEST_F(Output, VtuRefusesWhatDoesNotFit)
+{
+  const ControlPoints x = octahedron();
+  EXPECT_THROW(write_surface_vtu(path("s.vtu"), x, octahedron_faces, {{"short", Eigen::MatrixXd::Zero(5, 1)}}), std::invalid_argument);
+  EXPECT_THROW(write_surface_vtu(path("s.vtu"), x, octahedron_faces, {{"wide", Eigen::MatrixXd::Zero(6, 2)}}), std::invalid_argument);
+  EXPECT_THROW(write_surface_vtu(path("s.vtu"), x, {{0, 1, 6}}, {}), std::invalid_argument);
+  EXPECT_FALSE(std::filesystem::exists(path("s.vtu")));
+  EXPECT_THROW(write_surface_vtu(path("no_such_folder/s.vtu"), x, octahedron_faces, {}), InputError);
+}
+
+TEST_F(Output, PvdIsCompleteAfterEachEntry)
+{
+  PvdFile pvd(path("capsule.pvd"));
+  EXPECT_FALSE(std::filesystem::exists(path("capsule.pvd")));
+  const double third = 1.0 / 3.0;
+  pvd.add(0, "capsule_0000.vtu");
+  const std::string first = content("capsule.pvd");
+  pvd.add(third, "capsule_0001.vtu");
+  const std::string second = content("capsule.pvd");
+
+  for (const std::string &file : {first, second})
+    EXPECT_EQ(file.substr(file.size() - std::string("</Collection>\n</VTKFile>\n").size()), "</Collection>\n</VTKFile>\n");
+  EXPECT_NE(first.find("<DataSet timestep=\"0\" group=\"\" part=\"0\" file=\"capsule_0000.vtu\"/>"), std::string::npos);
+  EXPECT_EQ(first.find("capsule_0001"), std::string::npos);
+  EXPECT_NE(second.find("capsule_0000.vtu"), std::string::npos);
+  const std::size_t entry = second.find("<DataSet timestep=\"0.33");
+  ASSERT_NE(entry, std::string::npos);
+  EXPECT_NEAR(std::stod(second.substr(entry + 19)), third, 1e-15);
+  for (const auto &left_over : std::filesystem::directory_iterator(folder))
+    EXPECT_EQ(left_over.path().filename(), "capsule.pvd");
+  EXPECT_THROW(PvdFile(path("no_such_folder/c.pvd")).add(0, "c.vtu"), InputError);
+}
