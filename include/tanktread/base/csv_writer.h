@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: tables of numbers as comma-separated text.
+
+#ifndef tanktread_base_csv_writer_h
+#define tanktread_base_csv_writer_h
+
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace tanktread
+{
+  /** A file with one line of column names and one line a row (%.10g); each row is on disk when row() returns. */
+  class CsvWriter
+  {
+  public:
+    /**
+     * Starts `file_name` with the line of `names`. An inactive writer (on all ranks but the first) touches no file.
+     * @throws InputError when the file cannot be written.
+     */
+    CsvWriter(const std::string &file_name, const std::vector<std::string> &names, bool active = true);
+
+    /**
+     * Writes one row; `values` has one entry for each name.
+     * @throws std::logic_error for another number of values, std::runtime_error when writing fails (a full disk).
+     */
+    void
+    row(const std::vector<double> &values);
+
+  private:
+    const bool        active;
+    const std::string file_name;
+    const std::size_t n_columns;
+    std::ofstream     file;
+  };
+} // namespace tanktread
+
+#endif

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: errors that end a run on one rank or on all.
+
+#include <tanktread/base/exceptions.h>
+#include <tanktread/base/mpi_errors.h>
+
+#include <chrono>
+#include <iostream>
+#include <string>
+#include <thread>
+
+namespace tanktread
+{
+  namespace
+  {
+    struct Failure
+    {
+      int         exit_code = 0;
+      std::string message;
+    };
+
+    Failure
+    failure_of(const std::function<void()> &work)
+    {
+      try
+        {
+          work();
+        }
+      catch (const InputError &error)
+        {
+          return {1, error.what()};
+        }
+      catch (const NumericalError &error)
+        {
+          return {2, error.what()};
+        }
+      catch (const std::exception &error)
+        {
+          return {3, error.what()};
+        }
+      catch (...)
+        {
+          return {3, "unknown exception"};
+        }
+      return {};
+    }
+
+    /** True when all ranks of `communicator` call this function within `patience` seconds. */
+    bool
+    all_ranks_arrive(MPI_Comm communicator, const double patience)
+    {
+      using namespace std::chrono;
+      MPI_Request request;
+      MPI_Ibarrier(communicator, &request);
+      const auto start = steady_clock::now();
+      for (int arrived = 0; duration<double>(steady_clock::now() - start).count() < patience;)
+        {
+          MPI_Test(&request, &arrived, MPI_STATUS_IGNORE);
+          if (arrived)
+            return true;
+          std::this_thread::sleep_for(milliseconds(1));
+        }
+      return false;
+    }
+
+    void
+    print(const Failure &failure, const std::string &who)
+    {
+      const char *const kinds[] = {"", "bad input", "numerical failure", "unexpected error"};
+      std::cerr << "tanktread: " << kinds[failure.exit_code] << who << "\n" << failure.message << std::endl;
+    }
+  } // namespace
+
+  void
+  on_first_rank(MPI_Comm communicator, const std::function<void()> &work)
+  {
+    int rank;
+    MPI_Comm_rank(communicator, &rank);
+    Failure failure;
+    if (rank == 0)
+      failure = failure_of(work);
+    int numbers[2] = {failure.exit_code, static_cast<int>(failure.message.size())};
+    MPI_Bcast(numbers, 2, MPI_INT, 0, communicator);
+    failure.message.resize(numbers[1]);
+    MPI_Bcast(&failure.message[0], numbers[1], MPI_CHAR, 0, communicator);
+    if (numbers[0] == 1)
+      throw InputError(failure.message);
+    if (numbers[0] == 2)
+      throw NumericalError(failure.message);
+    if (numbers[0] != 0)
+      throw std::runtime_error(failure.message);
+  }
+
+  int
+  exit_code_of(MPI_Comm communicator, const std::function<void()> &work, const double patience)
+  {
+    // A communicator of its own: the ranks that have not failed may be inside a collective call of the other one.
+    MPI_Comm own;
+    MPI_Comm_dup(communicator, &own);
+    int rank, n_ranks;
+    MPI_Comm_rank(own, &rank);
+    MPI_Comm_size(own, &n_ranks);
+
+    const Failure failure   = failure_of(work);
+    const int     exit_code = failure.exit_code == 3 ? 2 : failure.exit_code;
+    if (exit_code != 0)
+      {
+        const bool together = n_ranks == 1 || all_ranks_arrive(own, patience);
+        if (!together || rank == 0)
+          print(failure, together ? "" : " on rank " + std::to_string(rank));
+        if (!together)
+          MPI_Abort(communicator, exit_code);
+      }
+    MPI_Comm_free(&own);
+    return exit_code;
+  }
+} // namespace tanktread

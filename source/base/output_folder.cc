@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: the folder that a run writes to.
+
+#include <tanktread/base/exceptions.h>
+#include <tanktread/base/output_folder.h>
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+namespace tanktread
+{
+  namespace
+  {
+    namespace fs = std::filesystem;
+
+    [[noreturn]] void
+    refuse(const fs::path &folder, const std::string &reason)
+    {
+      throw InputError("cannot write to the output folder \"" + folder.string() + "\": " + reason);
+    }
+
+    /** `folder` without trailing slashes and dots. */
+    fs::path
+    normal(const std::string &folder)
+    {
+      fs::path path = fs::path(folder).lexically_normal();
+      return path.has_filename() ? path : path.parent_path();
+    }
+
+    bool
+    holds_a_run(const fs::path &folder)
+    {
+      std::error_code error;
+      return fs::exists(folder / "history.csv", error);
+    }
+
+    /** Moves `folder` to `folder`.previous. A folder of that name which is not a run is somebody's and stays. */
+    fs::path
+    move_aside(const fs::path &folder)
+    {
+      const fs::path  aside = folder.string() + ".previous";
+      std::error_code error;
+      if (fs::exists(aside, error) && !holds_a_run(aside))
+        refuse(folder, "it holds a former run, which cannot be moved to \"" + aside.string() + "\" because that exists and is no run");
+      fs::remove_all(aside, error);
+      if (!error)
+        fs::rename(folder, aside, error);
+      if (error)
+        refuse(folder, "it holds a former run, which cannot be moved to \"" + aside.string() + "\" (" + error.message() + ")");
+      return aside;
+    }
+
+    void
+    check_writing(const fs::path &folder)
+    {
+      const fs::path probe = folder / ".tanktread_write_test";
+      const bool     good  = static_cast<bool>(std::ofstream(probe) << "test" << std::flush);
+      const int      code  = errno;
+      fs::remove(probe);
+      if (!good)
+        refuse(folder, std::strerror(code));
+    }
+  } // namespace
+
+  void
+  check_output_folder(const std::string &folder)
+  {
+    if (folder.empty())
+      throw InputError("the name of the output folder (Output/Directory) is empty; allowed: name of a folder");
+    const fs::path  path     = normal(folder);
+    fs::path        existing = fs::absolute(path);
+    std::error_code error;
+    while (!fs::exists(existing, error))
+      {
+        if (error && error != std::errc::not_a_directory)
+          refuse(path, "\"" + existing.string() + "\" cannot be looked at (" + error.message() + ")");
+        existing = existing.parent_path();
+      }
+    if (!fs::is_directory(existing))
+      refuse(path, "\"" + existing.string() + "\" is not a folder");
+    if (access(existing.c_str(), W_OK | X_OK) != 0)
+      refuse(path, "\"" + existing.string() + "\" (" + std::strerror(errno) + ")");
+  }
+
+  std::string
+  prepare_output_folder(const std::string &folder)
+  {
+    check_output_folder(folder);
+    const fs::path    path  = normal(folder);
+    const std::string aside = holds_a_run(path) ? move_aside(path).string() : "";
+    std::error_code   error;
+    fs::create_directories(path, error);
+    if (error)
+      refuse(path, error.message());
+    check_writing(path);
+    return aside;
+  }
+} // namespace tanktread
