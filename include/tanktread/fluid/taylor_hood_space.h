@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: Q2 velocity and Q1 pressure on one octree.
+
+#ifndef tanktread_fluid_taylor_hood_space_h
+#define tanktread_fluid_taylor_hood_space_h
+
+#include <deal.II/base/partitioner.h>
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/lac/affine_constraints.h>
+
+#include <tanktread/fluid/fluid_mesh.h>
+#include <tanktread/fluid/types.h>
+
+#include <memory>
+
+namespace tanktread
+{
+  /** One continuous scalar finite-element field of degree 1 or 2 on the mesh, with its constraints closed: hanging nodes, periodicity in x and y, zero at the walls. */
+  class ScalarSpace
+  {
+  public:
+    /** Collective. Throws NumericalError if the ranks disagree about a constraint (a deal.II defect that would otherwise give wrong answers silently). */
+    ScalarSpace(const FluidMesh &mesh, unsigned int degree, bool zero_at_walls);
+
+    const dealii::DoFHandler<3> &
+    dofs() const
+    {
+      return dof_handler_;
+    }
+    const dealii::AffineConstraints<double> &
+    constraints() const
+    {
+      return constraints_;
+    }
+
+    /** Owned and ghost degrees of freedom; ghosts include all masters of the constraints of the locally relevant ones. */
+    const std::shared_ptr<const dealii::Utilities::MPI::Partitioner> &
+    partitioner() const
+    {
+      return partitioner_;
+    }
+
+  private:
+    dealii::FE_Q<3>                                             fe_;
+    dealii::DoFHandler<3>                                       dof_handler_;
+    dealii::AffineConstraints<double>                           constraints_;
+    std::shared_ptr<const dealii::Utilities::MPI::Partitioner> partitioner_;
+  };
+
+  /**
+   * The pair of spaces. With constant viscosity the velocity components decouple, so all three share one scalar Q2 space.
+   *
+   * Velocities are disturbances: they vanish at the walls, whatever the undisturbed flow is.
+   */
+  struct TaylorHoodSpace
+  {
+    explicit TaylorHoodSpace(const FluidMesh &mesh)
+      : mesh(mesh)
+      , velocity(mesh, 2, true)
+      , pressure(mesh, 1, false)
+    {}
+
+    /** Makes `vector` a zero vector of `n_blocks` blocks, three velocity components and (if there are more than three) the pressure; blocks from 4 on stay empty. */
+    void
+    reinit(FluidBlockVector &vector, unsigned int n_blocks = 4) const;
+
+    const FluidMesh &mesh;
+    ScalarSpace      velocity;
+    ScalarSpace      pressure;
+  };
+} // namespace tanktread
+
+#endif

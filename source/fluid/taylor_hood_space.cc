@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: Q2 velocity and Q1 pressure on one octree.
+
+#include <deal.II/dofs/dof_tools.h>
+
+#include <tanktread/base/exceptions.h>
+#include <tanktread/fluid/compat.h>
+#include <tanktread/fluid/taylor_hood_space.h>
+
+namespace tanktread
+{
+  namespace
+  {
+    /** The relevant degrees of freedom and whatever their constraints refer to. */
+    dealii::IndexSet
+    with_masters(dealii::IndexSet relevant, const dealii::AffineConstraints<double> &constraints)
+    {
+      std::vector<dealii::types::global_dof_index> masters;
+      for (const auto i : relevant)
+        if (const auto *entries = constraints.get_constraint_entries(i))
+          for (const auto &entry : *entries)
+            masters.push_back(entry.first);
+      std::sort(masters.begin(), masters.end());
+      relevant.add_indices(masters.begin(), std::unique(masters.begin(), masters.end()));
+      relevant.compress();
+      return relevant;
+    }
+  } // namespace
+
+
+  ScalarSpace::ScalarSpace(const FluidMesh &mesh, const unsigned int degree, const bool zero_at_walls)
+    : fe_(degree)
+    , dof_handler_(mesh.triangulation())
+  {
+    dof_handler_.distribute_dofs(fe_);
+    const dealii::IndexSet owned    = dof_handler_.locally_owned_dofs();
+    const dealii::IndexSet relevant = dealii::DoFTools::extract_locally_relevant_dofs(dof_handler_);
+
+    // Hanging nodes first: the other order ends in cycles (deal.II 9.4.1 then throws in debug mode and hangs in release mode).
+    compat::reinit(constraints_, owned, relevant);
+    dealii::DoFTools::make_hanging_node_constraints(dof_handler_, constraints_);
+    dealii::DoFTools::make_periodicity_constraints(dof_handler_, 0, 1, 0, constraints_);
+    dealii::DoFTools::make_periodicity_constraints(dof_handler_, 2, 3, 1, constraints_);
+    if (zero_at_walls)
+      for (const dealii::types::boundary_id wall : {4, 5})
+        dealii::DoFTools::make_zero_boundary_constraints(dof_handler_, wall, constraints_);
+    constraints_.close();
+
+    const MPI_Comm   communicator = mesh.communicator();
+    dealii::IndexSet active       = dealii::DoFTools::extract_locally_active_dofs(dof_handler_);
+    if (!constraints_.is_consistent_in_parallel(dealii::Utilities::MPI::all_gather(communicator, owned), active, communicator))
+      throw NumericalError("The ranks disagree about hanging-node or periodicity constraints of the fluid mesh; run on another number of ranks.");
+
+    partitioner_ = std::make_shared<dealii::Utilities::MPI::Partitioner>(owned, with_masters(relevant, constraints_), communicator);
+  }
+
+
+  void
+  TaylorHoodSpace::reinit(FluidBlockVector &vector, const unsigned int n_blocks) const
+  {
+    vector.reinit(n_blocks);
+    for (unsigned int b = 0; b < std::min(n_blocks, pressure_block + 1); ++b)
+      vector.block(b).reinit(b < pressure_block ? velocity.partitioner() : pressure.partitioner());
+    vector.collect_sizes();
+  }
+} // namespace tanktread
