@@ -1,1 +1,65 @@
-int main() {}
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: the program.
+
+#include <tanktread/base/command_line.h>
+#include <tanktread/base/mpi_errors.h>
+#include <tanktread/base/version.h>
+#include <tanktread/simulation/parameters.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <iostream>
+
+namespace
+{
+  /** What is printed instead of computing anything; empty for a run. */
+  std::string
+  answer(const tanktread::CommandLine &command_line)
+  {
+    using Action = tanktread::CommandLine::Action;
+    switch (command_line.action)
+      {
+        case Action::help:
+          return tanktread::help_text();
+        case Action::version:
+          return tanktread::program_version() + "\n" + tanktread::library_versions() + "\n";
+        case Action::print_prm:
+        case Action::print_markdown:
+          return tanktread::default_parameters(command_line.action == Action::print_markdown);
+        case Action::validate:
+          tanktread::read_parameters(command_line.file, command_line.overrides);
+          return "valid\n";
+        case Action::run:
+          break;
+      }
+    return "";
+  }
+
+  void
+  work(const std::vector<std::string> &words)
+  {
+    const tanktread::CommandLine command_line = tanktread::parse_command_line(words);
+    const std::string            text         = answer(command_line);
+    if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+      std::cout << text << std::flush;
+    if (command_line.action == tanktread::CommandLine::Action::run)
+      tanktread::read_parameters(command_line.file, command_line.overrides);
+  }
+} // namespace
+
+int
+main(int argc, char *argv[])
+{
+  try
+    {
+      // Exceptions are turned into exit codes while MPI is still initialised: the ranks have to agree on how to end. One thread a rank.
+      const std::vector<std::string>               words(argv + 1, argv + argc);
+      const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+      return tanktread::exit_code_of(MPI_COMM_WORLD, [&words] { work(words); });
+    }
+  catch (const std::exception &error)
+    {
+      std::cerr << "tanktread: " << error.what() << std::endl;
+    }
+  return 2;
+}

@@ -20,7 +20,7 @@ namespace tanktread
     [[noreturn]] void
     refuse(const fs::path &folder, const std::string &reason)
     {
-      throw InputError("cannot write to the output folder \"" + folder.string() + "\": " + reason);
+      throw InputError("Output/Directory is \"" + folder.string() + "\", which cannot be written: " + reason);
     }
 
     /** `folder` without trailing slashes and dots. */
@@ -70,7 +70,7 @@ namespace tanktread
   check_output_folder(const std::string &folder)
   {
     if (folder.empty())
-      throw InputError("the name of the output folder (Output/Directory) is empty; allowed: name of a folder");
+      throw InputError("Output/Directory is empty; allowed: name of a folder");
     const fs::path  path     = normal(folder);
     fs::path        existing = fs::absolute(path);
     std::error_code error;

@@ -299,9 +299,17 @@ namespace tanktread
   }
 
   std::string
-  ParameterSource::name(const std::string &path) const
+  ParameterSource::locate(const std::string &message) const
   {
-    return is_set(path) ? where(path) + ": " + path : path + " (default)";
+    std::string place;
+    auto        first = std::string::npos;
+    for (const auto &[path, place_of_path] : places)
+      if (message.find(path) < first)
+        {
+          first = message.find(path);
+          place = place_of_path + ": ";
+        }
+    return place + message;
   }
 
   void

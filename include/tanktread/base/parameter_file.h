@@ -27,9 +27,9 @@ namespace tanktread
     bool
     is_set(const std::string &path) const;
 
-    /** Start of an error message about `path`: "scene.prm:7: Scene/Viscosity ratio" or "Scene/Viscosity ratio (default)". */
+    /** `message` with the place of the first set parameter that it mentions in front: "scene.prm:7: Scene/Viscosity ratio is 2; ...". */
     std::string
-    name(const std::string &path) const;
+    locate(const std::string &message) const;
 
     /** Notes that `path` got its value at `place`. */
     void

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: where results go and how often.
+
+#ifndef tanktread_simulation_output_parameters_h
+#define tanktread_simulation_output_parameters_h
+
+#include <string>
+
+namespace dealii
+{
+  class ParameterHandler;
+}
+
+namespace tanktread
+{
+  /** Section "Output". Intervals in units of time of the scene. */
+  struct OutputParameters
+  {
+    std::string directory           = "output";
+    double      history_interval    = 0.; // 0: each step
+    double      field_interval      = 1.; // 0: first and last only
+    double      checkpoint_interval = 0.; // 0: none
+
+    /** Declares section "Output" in `prm`; parsing fills this object, which has to outlive `prm`. */
+    void
+    add_parameters(dealii::ParameterHandler &prm);
+
+    /** @throws InputError for checkpoints, which this version has not. */
+    void
+    check() const;
+  };
+} // namespace tanktread
+
+#endif

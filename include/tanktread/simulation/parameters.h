@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: all parameters of a run, and reading them.
+
+#ifndef tanktread_simulation_parameters_h
+#define tanktread_simulation_parameters_h
+
+#include <tanktread/simulation/output_parameters.h>
+#include <tanktread/simulation/scene_parameters.h>
+
+#include <string>
+#include <vector>
+
+namespace tanktread
+{
+  class ParameterSource;
+
+  /** Section "Shell mesh". */
+  struct ShellMeshParameters
+  {
+    unsigned int level      = 3; // 10 * 4^level + 2 control points
+    unsigned int quadrature = 3; // points a face
+
+    /** Declares section "Shell mesh" in `prm`; parsing fills this object, which has to outlive `prm`. */
+    void
+    add_parameters(dealii::ParameterHandler &prm);
+  };
+
+  /** Everything that a parameter file can say. Members start with the defaults. */
+  struct Parameters
+  {
+    SceneParameters     scene;
+    ShellMeshParameters shell_mesh;
+    OutputParameters    output;
+
+    std::string file; // name of the parameter file
+    std::string used; // all parameters with the values used, as a parameter file that can be read again
+
+    /** Declares all sections in `prm`; parsing fills this object, which has to outlive `prm`. */
+    void
+    add_parameters(dealii::ParameterHandler &prm);
+
+    /**
+     * Checks each section and what they mean together; nothing is written.
+     * @throws InputError with one line for each section that is wrong, beginning with the place in `source` where the parameter was set.
+     */
+    void
+    check(const ParameterSource &source) const;
+  };
+
+  /**
+   * Reads `file`, applies `overrides` ("Section/Parameter=value") and checks the result, the output folder included. The name of a mesh file is taken relative to the
+   * folder of `file`, Output/Directory relative to the working directory.
+   * @throws InputError with one line for each error.
+   */
+  Parameters
+  read_parameters(const std::string &file, const std::vector<std::string> &overrides = {});
+
+  /** All parameters with their defaults, as a parameter file or as Markdown tables. */
+  std::string
+  default_parameters(bool as_markdown);
+} // namespace tanktread
+
+#endif

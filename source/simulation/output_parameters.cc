@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: where results go and how often.
+
+#include <tanktread/base/exceptions.h>
+#include <tanktread/simulation/output_parameters.h>
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <sstream>
+
+namespace tanktread
+{
+  void
+  OutputParameters::add_parameters(dealii::ParameterHandler &prm)
+  {
+    using dealii::Patterns::Double;
+    prm.enter_subsection("Output");
+    prm.add_parameter("Directory",
+                      directory,
+                      "Folder of the results, made if missing, in the folder in which the program is started. A former run in it is moved to "
+                      "<Directory>.previous.",
+                      dealii::Patterns::DirectoryName());
+    prm.add_parameter("History interval", history_interval, "Time between rows of history.csv; 0: a row each step.", Double(0.));
+    prm.add_parameter("Field interval", field_interval, "Time between VTU files of fluid and shell; 0: only the first and the last.", Double(0.));
+    prm.add_parameter("Checkpoint interval", checkpoint_interval, "Time between checkpoints. In this version 0: none.", Double(0.));
+    prm.leave_subsection();
+  }
+
+  void
+  OutputParameters::check() const
+  {
+    std::ostringstream message;
+    if (checkpoint_interval > 0.)
+      message << "Output/Checkpoint interval is " << checkpoint_interval << "; not available in this version, allowed: 0";
+    if (!message.str().empty())
+      throw InputError(message.str());
+  }
+} // namespace tanktread

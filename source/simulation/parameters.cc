@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: all parameters of a run, and reading them.
+
+#include <tanktread/base/exceptions.h>
+#include <tanktread/base/output_folder.h>
+#include <tanktread/base/parameter_file.h>
+#include <tanktread/base/parameter_table.h>
+#include <tanktread/simulation/parameters.h>
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <functional>
+
+namespace tanktread
+{
+  void
+  ShellMeshParameters::add_parameters(dealii::ParameterHandler &prm)
+  {
+    prm.enter_subsection("Shell mesh");
+    prm.add_parameter("Level",
+                      level,
+                      "Subdivisions of the icosahedron that give the control mesh: 10 * 4^level + 2 control points. Unused for a mesh file.",
+                      dealii::Patterns::Integer(0, 6));
+    prm.add_parameter("Quadrature", quadrature, "Quadrature points a face of the control mesh.", dealii::Patterns::Selection("1|3|6|7|12"));
+    prm.leave_subsection();
+  }
+
+  void
+  Parameters::add_parameters(dealii::ParameterHandler &prm)
+  {
+    scene.add_parameters(prm);
+    shell_mesh.add_parameters(prm);
+    output.add_parameters(prm);
+  }
+
+  void
+  Parameters::check(const ParameterSource &source) const
+  {
+    const std::vector<std::function<void()>> checks = {[&] { scene.check(); }, [&] { output.check(); }, [&] { check_output_folder(output.directory); }};
+    std::string                              errors;
+    for (const auto &check : checks)
+      try
+        {
+          check();
+        }
+      catch (const InputError &error)
+        {
+          errors += (errors.empty() ? "" : "\n") + source.locate(error.what());
+        }
+    if (!errors.empty())
+      throw InputError(errors);
+  }
+
+  Parameters
+  read_parameters(const std::string &file, const std::vector<std::string> &overrides)
+  {
+    Parameters               parameters;
+    dealii::ParameterHandler prm;
+    parameters.add_parameters(prm);
+    const ParameterSource source = read_parameter_file(prm, file, overrides);
+    parameters.check(source);
+    parameters.file = file;
+    parameters.used = parameters_as_prm(prm);
+    return parameters;
+  }
+
+  std::string
+  default_parameters(const bool as_markdown)
+  {
+    Parameters               parameters;
+    dealii::ParameterHandler prm;
+    parameters.add_parameters(prm);
+    return as_markdown ? parameters_as_markdown(prm) : parameters_as_prm(prm);
+  }
+} // namespace tanktread
