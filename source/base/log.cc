@@ -40,7 +40,7 @@ namespace tanktread
       std::string text = "Lengths in a (radius of the sphere of the capsule's volume), viscosity in mu (outer fluid),\n";
       if (run.shear)
         text += "time in 1/gamma (shear rate).\n  G    = " + number("%-10.6g", run.G) + "mu gamma a / (E h)\n  Ca   = " + number("%-10.6g", 3 * run.G) +
-                "mu gamma a / G_s = 3 G\n";
+          "mu gamma a / G_s = 3 G\n";
       else
         text += "time in mu a^3 / kappa_B.\n";
       return text + "  khat = " + number("%-10.6g", run.khat) + "kappa_B / (a^2 E h)\n  box  = " + number("%-10.6g", run.box_side) + "side, in a\n";
@@ -84,7 +84,7 @@ namespace tanktread
   Log::header(const RunDescription &run)
   {
     std::string text = program_version() + "\n" + library_versions() + "\n" + std::to_string(run.n_ranks) + (run.n_ranks == 1 ? " rank, " : " ranks, ") +
-                       run.parameter_file + ", " + now() + "\n\n" + scales_text(run);
+      run.parameter_file + ", " + now() + "\n\n" + scales_text(run);
     if (!run.left_out.empty())
       text += "\nLeft out, because the scene does not need it:\n";
     for (const std::string &item : run.left_out)

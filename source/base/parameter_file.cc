@@ -135,12 +135,12 @@ namespace tanktread
       void
       report_unknown_parameter(const std::string &section, const std::string &name, const std::string &place);
 
-      dealii::ParameterHandler        &prm;
-      const std::vector<ParameterInfo> table;
-      std::vector<OpenSection>         open;
+      dealii::ParameterHandler          &prm;
+      const std::vector<ParameterInfo>   table;
+      std::vector<OpenSection>           open;
       std::map<std::string, std::string> set_in_file_at;
-      ParameterSource                  source;
-      std::vector<std::string>         errors;
+      ParameterSource                    source;
+      std::vector<std::string>           errors;
     };
 
     /** Names of the sections directly below section `path`. */
@@ -172,10 +172,10 @@ namespace tanktread
     void
     Reader::open_section(const std::string &name, const std::string &place, const unsigned int line)
     {
-      const bool               parent_known = open.empty() || open.back().known;
-      const std::string        parent       = open.empty() ? "" : open.back().path;
-      const auto               names        = subsections(parent);
-      const bool               known        = parent_known && std::find(names.begin(), names.end(), name) != names.end();
+      const bool        parent_known = open.empty() || open.back().known;
+      const std::string parent       = open.empty() ? "" : open.back().path;
+      const auto        names        = subsections(parent);
+      const bool        known        = parent_known && std::find(names.begin(), names.end(), name) != names.end();
       if (parent_known && !known)
         error(place, "unknown section " + quoted(name) + (parent.empty() ? "" : " in section " + quoted(parent)) + suggestion(name, names));
       open.push_back({parent.empty() ? name : parent + "/" + name, line, known});
@@ -319,10 +319,7 @@ namespace tanktread
   }
 
   ParameterSource
-  read_parameter_text(dealii::ParameterHandler       &prm,
-                      const std::string              &text,
-                      const std::string              &file_name,
-                      const std::vector<std::string> &overrides)
+  read_parameter_text(dealii::ParameterHandler &prm, const std::string &text, const std::string &file_name, const std::vector<std::string> &overrides)
   {
     Reader reader(prm);
     reader.read_text(text, file_name);

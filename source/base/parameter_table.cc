@@ -45,11 +45,11 @@ namespace tanktread
     std::string
     range_in_words(const std::string &kind, const std::string &lower, const std::string &upper)
     {
-      const bool below_free = lower.empty() || lower.find("MAX") != std::string::npos;
-      const bool above_free = upper.empty() || upper.find("MAX") != std::string::npos;
-      const double bound    = std::strtod(lower.c_str(), nullptr);
-      const bool positive   = !below_free && bound > 0 && bound <= 2 * std::numeric_limits<double>::min();
-      const std::string at_least = positive ? "> 0" : ">= " + lower;
+      const bool        below_free = lower.empty() || lower.find("MAX") != std::string::npos;
+      const bool        above_free = upper.empty() || upper.find("MAX") != std::string::npos;
+      const double      bound      = std::strtod(lower.c_str(), nullptr);
+      const bool        positive   = !below_free && bound > 0 && bound <= 2 * std::numeric_limits<double>::min();
+      const std::string at_least   = positive ? "> 0" : ">= " + lower;
       if (below_free && above_free)
         return kind;
       if (above_free)
@@ -194,8 +194,8 @@ namespace tanktread
         if (parameter.section != section)
           text += (text.empty() ? "" : "\n") + ("## " + parameter.section) + "\n\n| Parameter | Default | Allowed | Meaning |\n|---|---|---|---|\n";
         section = parameter.section;
-        text += "| " + parameter.name + " | " + in_table(or_empty(parameter.default_value)) + " | " +
-                in_table(parameter.allowed) + " | " + in_table(parameter.documentation) + " |\n";
+        text += "| " + parameter.name + " | " + in_table(or_empty(parameter.default_value)) + " | " + in_table(parameter.allowed) + " | " +
+          in_table(parameter.documentation) + " |\n";
       }
     return text;
   }

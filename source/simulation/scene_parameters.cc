@@ -21,7 +21,10 @@ namespace tanktread
                        flow,
                        {{"shear", Flow::shear}, {"quiescent", Flow::quiescent}},
                        "shear: u = (z, 0, 0) far from the capsule, time in 1/gamma. quiescent: walls at rest, time in mu a^3 / kappa_B.");
-    prm.add_parameter("Shear number G", shear_number, "G = mu gamma a / (E h); E h is Young's modulus times thickness. Unused without shear.", Double(positive));
+    prm.add_parameter("Shear number G",
+                      shear_number,
+                      "G = mu gamma a / (E h); E h is Young's modulus times thickness. Unused without shear.",
+                      Double(positive));
     prm.add_parameter("Reduced bending modulus", reduced_bending_modulus, "khat = kappa_B / (a^2 E h).", Double(0.));
     prm.add_parameter("Viscosity ratio", viscosity_ratio, "Viscosity inside over viscosity outside. In this version 1.", Double(positive));
     prm.add_parameter("Reynolds number", reynolds_number, "Re = rho gamma a^2 / mu. In this version 0: Stokes flow.", Double(0.));

@@ -242,8 +242,7 @@ TEST(ParameterFile, NamesWrongWordsAndSections)
   EXPECT_EQ(error("subsection Shell mesh\nset Quadrature = 4\nset Level = 7\nend"),
             "x.prm:2: Shell mesh/Quadrature = 4; allowed: one of 1, 3, 6, 7, 12\nx.prm:3: Shell mesh/Level = 7; allowed: a whole number from 0 to 6");
   EXPECT_EQ(error("subsection Scen\nset Modulus = 2\nend"), "x.prm:1: unknown section \"Scen\"; did you mean \"Scene\"?");
-  EXPECT_EQ(error("subsection Fluid\nsubsection Scene\nset Modulus = -2\nend\nend"),
-            "x.prm:1: unknown section \"Fluid\"; allowed: Scene, Shell mesh, Output");
+  EXPECT_EQ(error("subsection Fluid\nsubsection Scene\nset Modulus = -2\nend\nend"), "x.prm:1: unknown section \"Fluid\"; allowed: Scene, Shell mesh, Output");
   EXPECT_EQ(error("subsection Shell mesh\nsubsection Iner\nend\nend"), "x.prm:2: unknown section \"Iner\" in section \"Shell mesh\"; did you mean \"Inner\"?");
   EXPECT_EQ(error("\nsubsection Scene\n"), "x.prm:2: section \"Scene\" has no \"end\"");
   EXPECT_EQ(error("set Modulus = 1"), "x.prm:1: unknown parameter \"Modulus\" outside of all sections; it belongs to section \"Scene\"");
@@ -327,7 +326,7 @@ TEST(ParameterTable, MarkdownHasOneRowAParameter)
 
 TEST(CommandLine, ReadsOptionsInAnyOrder)
 {
-  using Action = CommandLine::Action;
+  using Action          = CommandLine::Action;
   const CommandLine run = parse_command_line({"--set", "A/b=1", "x.prm", "--set", "A/c=-2"});
   EXPECT_EQ(run.action, Action::run);
   EXPECT_EQ(run.file, "x.prm");

@@ -18,11 +18,11 @@ namespace tanktread
    */
   template <typename Enum>
   void
-  add_enum_parameter(dealii::ParameterHandler                         &prm,
-                     const std::string                                &name,
-                     Enum                                             &value,
+  add_enum_parameter(dealii::ParameterHandler                        &prm,
+                     const std::string                               &name,
+                     Enum                                            &value,
                      const std::vector<std::pair<std::string, Enum>> &names,
-                     const std::string                                &documentation)
+                     const std::string                               &documentation)
   {
     std::string allowed, initial;
     for (const auto &[word, enumerator] : names)

@@ -32,8 +32,8 @@ namespace tanktread
     unsigned int step              = 0;
     double       time              = 0.;
     double       dt                = 0.;
-    unsigned int newton            = 0; // iterations
-    unsigned int linear            = 0; // iterations
+    unsigned int newton            = 0;  // iterations
+    unsigned int linear            = 0;  // iterations
     double       D                 = 0.; // Taylor parameter D_xz
     double       theta_over_pi     = 0.; // inclination
     double       volume_error      = 0.; // relative

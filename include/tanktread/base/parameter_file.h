@@ -53,10 +53,7 @@ namespace tanktread
 
   /** Same for the text of a file; `file_name` is used in messages only. */
   ParameterSource
-  read_parameter_text(dealii::ParameterHandler       &prm,
-                      const std::string              &text,
-                      const std::string              &file_name,
-                      const std::vector<std::string> &overrides = {});
+  read_parameter_text(dealii::ParameterHandler &prm, const std::string &text, const std::string &file_name, const std::vector<std::string> &overrides = {});
 } // namespace tanktread
 
 #endif
