@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: interpolation of the fluid's velocity to the shell and spreading of the shell's forces to the fluid, each the other's adjoint.
+
+#ifndef tanktread_coupling_coupling_h
+#define tanktread_coupling_coupling_h
+
+#include <Eigen/SparseCholesky>
+#include <tanktread/fluid/point_interpolation.h>
+#include <tanktread/surface/subdivision_surface.h>
+
+#include <memory>
+
+namespace tanktread
+{
+  /** Values at the coupling's quadrature points: velocity (n_points x 3) and its gradient (n_points x 9, entry 3 c + d is du_c/dx_d). */
+  struct PointVelocity
+  {
+    ControlPoints                                                   value;
+    Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor> gradient;
+  };
+
+  /**
+   * With X_q = S x the quadrature points, Phi the fluid's shape functions there, W the weights in reference area and M = S^T W S:
+   *
+   *     interpolation  J(x) u = M^{-1} S^T W Phi u        (velocity of the control points)
+   *     spreading      R(x) f = Phi^T W S M^{-1} f = J^T f (load vector of nodal forces f)
+   *
+   * so the power f . J u = (R f) . u agrees to rounding. Nodal fields are NP x 3 and replicated on all ranks; calls that take fluid vectors are collective.
+   */
+  class Coupling
+  {
+  public:
+    /**
+     * @param surface quadrature of the coupling, spaced at about half a fluid cell or less; kept by reference.
+     * @param reference_weights w_q sqrt(det abar_q), length n_points.
+     */
+    Coupling(const SubdivisionSurface &surface, Eigen::VectorXd reference_weights);
+
+    /** To be called for every new fluid mesh, before move(). */
+    void
+    attach(const TaylorHoodSpace &space);
+
+    /** Moves the quadrature points to S x. Throws NumericalError when one leaves the box. */
+    void
+    move(const ControlPoints &x);
+
+    /** S x as points of the fluid. */
+    std::vector<dealii::Point<3>>
+    points(const ControlPoints &x) const;
+
+    /** S^T W Phi u: what M has to be inverted on to give J u. */
+    ControlPoints
+    velocity_moments(const FluidBlockVector &u) const;
+
+    /** J u. */
+    ControlPoints
+    interpolate(const FluidBlockVector &u) const;
+
+    PointVelocity
+    velocity_and_gradient(const FluidBlockVector &u) const;
+
+    /** M^{-1} f: control points of the force density per reference area. */
+    ControlPoints
+    density(const ControlPoints &f) const;
+
+    /** load += R f. */
+    void
+    spread(const ControlPoints &f, FluidBlockVector &load) const;
+
+    /**
+     * load += R f + sum_q w_q (S dx)_q . grad Phi(X_q) (S g)_q, the second term being the change of R f0 when the shell moves by dx.
+     *
+     * @param g = density(f0).
+     */
+    void
+    spread_with_motion(const ControlPoints &f, const ControlPoints &dx, const ControlPoints &g, FluidBlockVector &load) const;
+
+    /** S^T W grad u S, 3 NP x 3 NP: M^{-1} times it is the change of J u when the shell moves. */
+    SparseMatrix
+    gradient_matrix(const PointVelocity &velocity) const;
+
+    /** M, NP x NP. */
+    const SparseMatrix &
+    mass() const
+    {
+      return mass_;
+    }
+    const SubdivisionSurface &
+    surface() const
+    {
+      return surface_;
+    }
+
+  private:
+    /** S^T W v for values at the points. */
+    ControlPoints
+    moments(const ControlPoints &values) const;
+
+    const SubdivisionSurface                                                &surface_;
+    Eigen::VectorXd                                                          weights_;
+    SparseMatrix                                                             S_transposed_;
+    SparseMatrix                                                             mass_;
+    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double, Eigen::ColMajor, int>> mass_factorisation_;
+    std::unique_ptr<PointInterpolation>                                      interpolation_;
+  };
+
+  /**
+   * Points per face (as subdivisions of a triangle rule with `points_per_face` points) that bring the points of the surface x closer than half a cell of size h:
+   * the smallest n for which the largest area of a point is below (h/2)^2.
+   */
+  unsigned int
+  coupling_subdivisions(const TriangleMesh &topology, const ControlPoints &x, unsigned int points_per_face, double h);
+} // namespace tanktread
+
+#endif

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: exact statements about spreading and interpolation.
+
+#include <deal.II/base/mpi.h>
+
+#include <gtest/gtest.h>
+#include <tanktread/coupling/coupling.h>
+#include <tanktread/surface/capsule_shape.h>
+#include <tanktread/surface/surface_geometry.h>
+
+#include <random>
+
+using namespace tanktread;
+
+namespace
+{
+  struct Scene
+  {
+    Scene()
+      : mesh(MPI_COMM_WORLD, 4., parameters())
+      , shape(make_capsule({}, 2))
+      , surface(shape.topology, triangle_quadrature(3), Derivatives::first)
+      , coupling(surface, area_weights(surface, shape.control_points))
+      , x(shape.control_points)
+    {
+      x.col(0).array() += 1.3; // crosses the periodic face x = 2
+      x.col(2) *= 0.8;
+      // Off the planes of symmetry: there points lie on faces of cells, across which velocity gradients jump.
+      x.rowwise() += Eigen::RowVector3d(0.00137, 0.00271, 0.00314);
+      mesh.adapt(coupling.points(x));
+      space = std::make_unique<TaylorHoodSpace>(mesh);
+      coupling.attach(*space);
+      coupling.move(x);
+      space->reinit(u);
+      std::mt19937                     random(7 + dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD));
+      std::normal_distribution<double> normal;
+      for (unsigned int c = 0; c < 3; ++c)
+        for (const auto i : u.block(c).locally_owned_elements())
+          if (!space->velocity.constraints().is_constrained(i))
+            u.block(c)(i) = normal(random);
+      std::mt19937 same_everywhere(3);
+      f.resizeLike(x);
+      for (Eigen::Index i = 0; i < f.size(); ++i)
+        f.data()[i] = normal(same_everywhere);
+    }
+
+    static FluidMeshParameters
+    parameters()
+    {
+      FluidMeshParameters p;
+      p.coarsest_cell = 1.;
+      p.finest_cell   = 0.25;
+      return p;
+    }
+
+    FluidMesh                        mesh;
+    FittedShape                      shape;
+    SubdivisionSurface               surface;
+    Coupling                         coupling;
+    ControlPoints                    x, f;
+    std::unique_ptr<TaylorHoodSpace> space;
+    FluidBlockVector                 u;
+  };
+} // namespace
+
+
+TEST(Coupling, PowerOfShellIsPowerReceivedByFluid)
+{
+  Scene            s;
+  FluidBlockVector load;
+  s.space->reinit(load);
+  s.coupling.spread(s.f, load);
+  const ControlPoints velocity = s.coupling.interpolate(s.u);
+  const double        power    = s.f.cwiseProduct(velocity).sum();
+  EXPECT_GT(std::abs(power), 1e-3);
+  EXPECT_NEAR(load * s.u, power, 1e-12 * s.f.norm() * velocity.norm());
+}
+
+
+TEST(Coupling, SpreadingConservesTotalForce)
+{
+  // The constant velocity is in the space but for the walls, where it is constrained to zero; no point of this shell is in a cell at a wall.
+  Scene            s;
+  FluidBlockVector load;
+  s.space->reinit(load);
+  s.coupling.spread(s.f, load);
+  for (unsigned int c = 0; c < 3; ++c)
+    EXPECT_NEAR(load.block(c).mean_value() * load.block(c).size(), s.f.col(c).sum(), 1e-11 * s.f.norm());
+}
+
+
+TEST(Coupling, MotionOfPointsIsTheDerivative)
+{
+  Scene               s;
+  const ControlPoints dx = ControlPoints::Random(s.x.rows(), 3); // Eigen's generator starts from the same seed on every rank
+  const auto          power_at = [&](const ControlPoints &x) {
+    s.coupling.move(x);
+    return s.f.cwiseProduct(s.coupling.interpolate(s.u)).sum();
+  };
+  const double epsilon  = 1e-6;
+  const double expected = (power_at(s.x + epsilon * dx) - power_at(s.x - epsilon * dx)) / (2. * epsilon);
+  s.coupling.move(s.x);
+
+  FluidBlockVector load;
+  s.space->reinit(load);
+  s.coupling.spread_with_motion(ControlPoints::Zero(s.x.rows(), 3), dx, s.coupling.density(s.f), load);
+  const double scale = std::abs(expected) + 1.;
+  EXPECT_NEAR(load * s.u, expected, 1e-5 * scale);
+
+  const SparseMatrix  gamma = s.coupling.gradient_matrix(s.coupling.velocity_and_gradient(s.u));
+  const ControlPoints g     = s.coupling.density(s.f);
+  const Eigen::VectorXd gamma_dx = gamma * Eigen::Map<const Eigen::VectorXd>(dx.data(), dx.size());
+  EXPECT_NEAR(Eigen::Map<const Eigen::VectorXd>(g.data(), g.size()).dot(gamma_dx), expected, 1e-5 * scale);
+}
+
+
+TEST(Coupling, LinearVelocitiesReachTheControlPointsExactly)
+{
+  // J of a linear field is the field at the control points: the surface reproduces linear fields, so J never sees the undisturbed shear's discretisation.
+  Scene               s;
+  const ControlPoints positions = s.surface.S() * s.x;
+  const ControlPoints shear     = (ControlPoints(positions.rows(), 3) << positions.col(2), 0. * positions.col(2), 0. * positions.col(2)).finished();
+  const Eigen::VectorXd w       = area_weights(s.surface, s.shape.control_points);
+  const ControlPoints moments   = s.surface.S().transpose() * (w.asDiagonal() * shear);
+  EXPECT_LT((s.coupling.density(moments).col(0) - s.x.col(2)).cwiseAbs().maxCoeff(), 1e-11);
+}
+
+
+TEST(Coupling, QuadratureFollowsTheFluidCell)
+{
+  const FittedShape  shape    = make_capsule({}, 2);
+  const unsigned int coarse   = coupling_subdivisions(shape.topology, shape.control_points, 3, 0.5);
+  const unsigned int fine     = coupling_subdivisions(shape.topology, shape.control_points, 3, 0.0625);
+  EXPECT_EQ(coarse, 0u);
+  const SubdivisionSurface surface(shape.topology, triangle_quadrature(3, fine), Derivatives::first);
+  EXPECT_LE(std::sqrt(area_weights(surface, shape.control_points).maxCoeff()), 0.52 * 0.0625);
+}
+
+
+int
+main(int argc, char **argv)
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  ::testing::InitGoogleTest(&argc, argv);
+  const int failed = RUN_ALL_TESTS();
+  return dealii::Utilities::MPI::max(failed, MPI_COMM_WORLD);
+}
