@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: the initial shape of a capsule, from its parameters to control points.
+
+#ifndef tanktread_surface_capsule_shape_h
+#define tanktread_surface_capsule_shape_h
+
+#include <tanktread/surface/triangle_mesh.h>
+#include <tanktread/surface/types.h>
+
+#include <array>
+#include <string>
+
+namespace dealii
+{
+  class ParameterHandler;
+}
+
+namespace tanktread
+{
+  /** Shapes a capsule can start from; all are scaled to the volume 4 pi/3. */
+  enum class Shape
+  {
+    sphere,
+    ellipsoid,
+    oblate,
+    biconcave,
+    file
+  };
+
+  /**
+   * The parameters of section "Capsule" that describe the initial shape.
+   *
+   * - ellipsoid: semi-axes in the ratio `axes` along x, y, z.
+   * - oblate: spheroid with semi-axis b along z and a along x and y, `aspect_ratio` = b/a.
+   * - biconcave: (x, y, z) = R (s_x, s_y, s_z (C0 + C1 r^2 + C2 r^4)/2) for s on the unit sphere, r^2 = s_x^2 + s_y^2, C0 = 0.2072, C1 = 2.0026,
+   *   C2 = -1.1228; the symmetry axis is z (Evans & Fung 1972; Le 2010).
+   * - file: the limit surface through the vertices of a closed triangle mesh; its connectivity is the control mesh.
+   *
+   * Afterwards the shape is turned about y by `inclination` (in units of pi): a positive angle turns the +x axis towards the +z axis, so that the angle
+   * is the one that InertiaEllipsoid::inclination measures.
+   */
+  struct CapsuleShapeParameters
+  {
+    Shape                 shape        = Shape::sphere;
+    std::array<double, 3> axes         = {{2., 2., 1.}};
+    double                aspect_ratio = 0.6;
+    double                inclination  = 0.;
+    std::string           file;
+
+    /** Declares the parameters in section "Capsule" of `prm`; parsing fills this object, which has to outlive `prm`. */
+    void
+    add_parameters(dealii::ParameterHandler &prm);
+
+    /** Throws InputError on values that make no shape. */
+    void
+    check() const;
+  };
+
+  /** Control points and the mesh that connects them. */
+  struct FittedShape
+  {
+    TriangleMesh  topology;
+    ControlPoints control_points;
+  };
+
+  /**
+   * Control points whose limit surface is the shape wanted: a least-squares fit of the analytic shape on icosphere(level), or, for Shape::file, the limit surface
+   * that passes through the vertices (`level` is not used then). The enclosed volume is 4 pi/3 by a quadrature with 48 points a face
+   * (coarser rules see 1e-5 more or less at level 4, from the faces at extraordinary vertices), its centroid the origin. Throws InputError where check(), read_triangle_mesh() or check_closed_surface() do.
+   */
+  FittedShape
+  make_capsule(const CapsuleShapeParameters &parameters, unsigned int level);
+
+  /** Limit positions of the vertices of a fitted shape, connected as its control mesh: what to draw. */
+  TriangleMesh
+  limit_mesh(const TriangleMesh &topology, const ControlPoints &control_points);
+} // namespace tanktread
+
+#endif

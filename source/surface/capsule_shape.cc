@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: the initial shape of a capsule, from its parameters to control points.
+
+#include <tanktread/base/enum_parameter.h>
+#include <tanktread/base/exceptions.h>
+#include <tanktread/surface/capsule_shape.h>
+#include <tanktread/surface/surface_geometry.h>
+#include <tanktread/surface/surface_operators.h>
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/SparseLU>
+
+#include <cmath>
+#include <string>
+
+namespace tanktread
+{
+  namespace
+  {
+    /** Where the shape has the material point that the unit sphere has at s; not yet scaled or turned. */
+    Eigen::Vector3d
+    shape_point(const CapsuleShapeParameters &parameters, const Eigen::Vector3d &s)
+    {
+      switch (parameters.shape)
+        {
+          case Shape::ellipsoid:
+            return {parameters.axes[0] * s[0], parameters.axes[1] * s[1], parameters.axes[2] * s[2]};
+          case Shape::oblate:
+            return {s[0], s[1], parameters.aspect_ratio * s[2]};
+          case Shape::biconcave:
+            {
+              const double r_2 = s[0] * s[0] + s[1] * s[1];
+              return {s[0], s[1], 0.5 * s[2] * (0.2072 + r_2 * (2.0026 - 1.1228 * r_2))};
+            }
+          default:
+            return s;
+        }
+    }
+
+    /**
+     * Least squares over all points of a fine quadrature, weighted with area on the sphere. The limit surface of the icosphere, projected to the unit sphere,
+     * says which point of the shape belongs to which parameter: it is as smooth as the basis at extraordinary vertices.
+     */
+    ControlPoints
+    fit_shape(const CapsuleShapeParameters &parameters, const TriangleMesh &sphere)
+    {
+      const SubdivisionSurface surface(sphere, triangle_quadrature(12), Derivatives::first);
+      ControlPoints            x(sphere.vertices.size(), 3);
+      for (Eigen::Index i = 0; i < x.rows(); ++i)
+        x.row(i) = sphere.vertices[i];
+      const Eigen::VectorXd weights = area_weights(surface, x);
+      ControlPoints         wanted  = surface.S() * x;
+      for (Eigen::Index q = 0; q < wanted.rows(); ++q)
+        wanted.row(q) = weights[q] * shape_point(parameters, wanted.row(q).transpose().normalized());
+
+      const SparseMatrix                                                mass = mass_matrix(surface, weights);
+      Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower | Eigen::Upper> solver(mass);
+      solver.setTolerance(1e-15);
+      return solver.solveWithGuess(surface.S().transpose() * wanted, x);
+    }
+
+    ControlPoints
+    interpolate_vertices(const TriangleMesh &mesh)
+    {
+      ControlPoints vertices(mesh.vertices.size(), 3);
+      for (Eigen::Index i = 0; i < vertices.rows(); ++i)
+        vertices.row(i) = mesh.vertices[i];
+      const Eigen::SparseMatrix<double>           stencils = vertex_limit_stencils(mesh);
+      Eigen::SparseLU<Eigen::SparseMatrix<double>> solver(stencils);
+      if (solver.info() != Eigen::Success)
+        throw InputError("No subdivision surface passes through the vertices of the mesh file.");
+      const Eigen::MatrixXd columns = vertices, solution = solver.solve(columns); // SparseLU takes no matrices stored by rows
+      return solution;
+    }
+
+    /** Moves the centroid to the origin, scales to the volume 4 pi/3, turns +x towards +z by `angle`. */
+    void
+    normalise(const TriangleMesh &topology, const double angle, ControlPoints &x)
+    {
+      const SubdivisionSurface surface(topology, triangle_quadrature(12, 1), Derivatives::first);
+      x.rowwise() -= inertia_ellipsoid(surface, x).centroid.transpose();
+      x *= std::cbrt(4. * M_PI / 3. / enclosed_volume(surface, x));
+      const Eigen::Matrix3d turn = Eigen::AngleAxisd(-angle, Eigen::Vector3d::UnitY()).toRotationMatrix();
+      x                          = (x * turn.transpose()).eval();
+    }
+  } // namespace
+
+
+
+  void
+  CapsuleShapeParameters::add_parameters(dealii::ParameterHandler &prm)
+  {
+    using dealii::Patterns::Double;
+    using dealii::Patterns::List;
+    prm.enter_subsection("Capsule");
+    add_enum_parameter(prm,
+                       "Shape",
+                       shape,
+                       {{"sphere", Shape::sphere},
+                        {"ellipsoid", Shape::ellipsoid},
+                        {"oblate", Shape::oblate},
+                        {"biconcave", Shape::biconcave},
+                        {"file", Shape::file}},
+                       "Initial shape; every shape is scaled to the volume of the unit sphere.");
+    prm.add_parameter("Axes", axes, "Ratio of the semi-axes of an ellipsoid along x, y and z, before it is turned.", List(Double(0.), 3, 3));
+    prm.add_parameter("Aspect ratio", aspect_ratio, "Semi-axis of an oblate spheroid along z, its axis of symmetry, over those along x and y, before it is turned.", Double(0.));
+    prm.add_parameter("Inclination", inclination, "Angle in units of pi by which the shape is turned about the y axis; positive turns the x axis towards the z axis.");
+    prm.add_parameter("Mesh file", file, "Closed triangle mesh (.off or .obj) whose vertices lie on the surface of the capsule, for the shape 'file'.");
+    prm.leave_subsection();
+  }
+
+
+
+  void
+  CapsuleShapeParameters::check() const
+  {
+    for (const double axis : axes)
+      if (shape == Shape::ellipsoid && !(axis > 0.))
+        throw InputError("Capsule/Axes: got " + std::to_string(axis) + "; every semi-axis has to be positive.");
+    if (shape == Shape::oblate && !(aspect_ratio > 0. && aspect_ratio <= 1.))
+      throw InputError("Capsule/Aspect ratio: got " + std::to_string(aspect_ratio) + "; an oblate spheroid has one in (0, 1].");
+    if (!std::isfinite(inclination))
+      throw InputError("Capsule/Inclination: got " + std::to_string(inclination) + "; it has to be a finite number.");
+    if (shape == Shape::file && file.empty())
+      throw InputError("Capsule/Mesh file: the shape 'file' needs the name of a mesh file.");
+  }
+
+
+
+  FittedShape
+  make_capsule(const CapsuleShapeParameters &parameters, const unsigned int level)
+  {
+    parameters.check();
+    FittedShape result;
+    if (parameters.shape == Shape::file)
+      {
+        result.topology = read_triangle_mesh(parameters.file);
+        check_closed_surface(result.topology, "Mesh file '" + parameters.file + "'");
+        result.control_points = interpolate_vertices(result.topology);
+      }
+    else
+      {
+        result.topology       = icosphere(level);
+        result.control_points = fit_shape(parameters, result.topology);
+      }
+    normalise(result.topology, parameters.inclination * M_PI, result.control_points);
+    return result;
+  }
+
+
+
+  TriangleMesh
+  limit_mesh(const TriangleMesh &topology, const ControlPoints &control_points)
+  {
+    const ControlPoints limit = vertex_limit_stencils(topology) * control_points;
+    TriangleMesh        mesh{std::vector<Eigen::Vector3d>(limit.rows()), topology.faces};
+    for (Eigen::Index i = 0; i < limit.rows(); ++i)
+      mesh.vertices[i] = limit.row(i);
+    return mesh;
+  }
+} // namespace tanktread
