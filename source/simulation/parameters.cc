@@ -9,10 +9,43 @@
 
 #include <deal.II/base/parameter_handler.h>
 
+#include <filesystem>
 #include <functional>
 
 namespace tanktread
 {
+  namespace
+  {
+    /** Reads the mesh file, if there is one, and throws InputError unless it is a closed surface. */
+    void
+    check_mesh_file(const CapsuleShapeParameters &capsule)
+    {
+      if (capsule.shape != Shape::file || capsule.file.empty())
+        return;
+      try
+        {
+          check_closed_surface(read_triangle_mesh(capsule.file), "Mesh file '" + capsule.file + "'");
+        }
+      catch (const InputError &error)
+        {
+          throw InputError(std::string("Capsule/Mesh file: ") + error.what());
+        }
+    }
+
+    /** Makes the name of the mesh file independent of the working directory: a relative one is meant relative to the folder of the parameter file. */
+    void
+    find_mesh_file(dealii::ParameterHandler &prm, const Parameters &parameters)
+    {
+      namespace fs = std::filesystem;
+      if (parameters.capsule.file.empty())
+        return;
+      const fs::path folder = fs::absolute(parameters.file).parent_path();
+      prm.enter_subsection("Capsule");
+      prm.set("Mesh file", (folder / parameters.capsule.file).lexically_normal().string());
+      prm.leave_subsection();
+    }
+  } // namespace
+
   void
   ShellMeshParameters::add_parameters(dealii::ParameterHandler &prm)
   {
@@ -29,15 +62,25 @@ namespace tanktread
   Parameters::add_parameters(dealii::ParameterHandler &prm)
   {
     scene.add_parameters(prm);
+    capsule.add_parameters(prm);
     shell_mesh.add_parameters(prm);
+    prm.enter_subsection("Fluid mesh");
+    fluid_mesh.add_parameters(prm);
+    prm.leave_subsection();
     output.add_parameters(prm);
   }
 
   void
   Parameters::check(const ParameterSource &source) const
   {
-    const std::vector<std::function<void()>> checks = {[&] { scene.check(); }, [&] { output.check(); }, [&] { check_output_folder(output.directory); }};
-    std::string                              errors;
+    const std::vector<std::function<void()>> checks = {[&] { scene.check(); },
+                                                       [&] { capsule.check(); },
+                                                       [&] { check_mesh_file(capsule); },
+                                                       [&] { fluid_mesh.check(scene.box_side); },
+                                                       [&] { output.check(); },
+                                                       [&] { check_output_folder(output.directory); }};
+
+    std::string errors;
     for (const auto &check : checks)
       try
         {
@@ -58,8 +101,9 @@ namespace tanktread
     dealii::ParameterHandler prm;
     parameters.add_parameters(prm);
     const ParameterSource source = read_parameter_file(prm, file, overrides);
+    parameters.file              = file;
+    find_mesh_file(prm, parameters);
     parameters.check(source);
-    parameters.file = file;
     parameters.used = parameters_as_prm(prm);
     return parameters;
   }

@@ -4,8 +4,10 @@
 #ifndef tanktread_simulation_parameters_h
 #define tanktread_simulation_parameters_h
 
+#include <tanktread/fluid/fluid_mesh.h>
 #include <tanktread/simulation/output_parameters.h>
 #include <tanktread/simulation/scene_parameters.h>
+#include <tanktread/surface/capsule_shape.h>
 
 #include <string>
 #include <vector>
@@ -28,9 +30,11 @@ namespace tanktread
   /** Everything that a parameter file can say. Members start with the defaults. */
   struct Parameters
   {
-    SceneParameters     scene;
-    ShellMeshParameters shell_mesh;
-    OutputParameters    output;
+    SceneParameters        scene;
+    CapsuleShapeParameters capsule;
+    ShellMeshParameters    shell_mesh;
+    FluidMeshParameters    fluid_mesh;
+    OutputParameters       output;
 
     std::string file; // name of the parameter file
     std::string used; // all parameters with the values used, as a parameter file that can be read again
@@ -40,7 +44,7 @@ namespace tanktread
     add_parameters(dealii::ParameterHandler &prm);
 
     /**
-     * Checks each section and what they mean together; nothing is written.
+     * Checks each section, what they mean together, the mesh file and the output folder; nothing is written.
      * @throws InputError with one line for each section that is wrong, beginning with the place in `source` where the parameter was set.
      */
     void
@@ -48,7 +52,7 @@ namespace tanktread
   };
 
   /**
-   * Reads `file`, applies `overrides` ("Section/Parameter=value") and checks the result, the output folder included. The name of a mesh file is taken relative to the
+   * Reads `file`, applies `overrides` ("Section/Parameter=value") and checks the result. The name of a mesh file is taken relative to the
    * folder of `file`, Output/Directory relative to the working directory.
    * @throws InputError with one line for each error.
    */

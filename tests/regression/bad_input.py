@@ -1,0 +1,135 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Part of Tanktread: runs the program on bad input; checks message and exit code, and that nothing was written.
+"""Usage: bad_input.py --list | bad_input.py PROGRAM CASE
+
+Each case starts PROGRAM in an empty folder that holds case.prm (and the mesh files of data/). It passes when the exit code is the one wanted, all
+expected texts are on standard error (or output, for exit code 0), and the folder holds the same files as before.
+"""
+
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+DATA = pathlib.Path(__file__).resolve().parent / "data"
+
+
+def section(name, *lines):
+    return "\n".join([f"subsection {name}"] + [f"  {line}" for line in lines] + ["end", ""])
+
+
+# name: (text of case.prm, words of the command line, exit code, expected texts)
+CASES = {
+    "misspelt_parameter": (
+        section("Scene", "set Shear numbr G = 0.1"),
+        ["case.prm"],
+        1,
+        ["case.prm:2: unknown parameter", '"Shear numbr G"', 'did you mean "Shear number G"?'],
+    ),
+    "misspelt_section": (
+        section("Scen", "set End time = 1"),
+        ["case.prm"],
+        1,
+        ['case.prm:1: unknown section "Scen"; did you mean "Scene"?'],
+    ),
+    "negative_modulus": (
+        section("Scene", "", "set Reduced bending modulus = -0.01"),
+        ["case.prm"],
+        1,
+        ["case.prm:3: Scene/Reduced bending modulus = -0.01; allowed: a number >= 0"],
+    ),
+    "wrong_word": (
+        section("Capsule", "set Shape = cube"),
+        ["case.prm"],
+        1,
+        ["case.prm:2: Capsule/Shape = cube; allowed: one of sphere, ellipsoid, oblate, biconcave, file"],
+    ),
+    "two_errors": (
+        section("Scene", "set Shear number G = -1", "set End tim = 1"),
+        ["case.prm"],
+        1,
+        ["case.prm:2: Scene/Shear number G = -1; allowed: a number > 0", "case.prm:3: unknown parameter"],
+    ),
+    "not_available": (
+        section("Scene", "set Viscosity ratio = 5"),
+        ["case.prm"],
+        1,
+        ["case.prm:2: Scene/Viscosity ratio is 5; not available in this version, allowed: 1"],
+    ),
+    "open_mesh": (
+        section("Capsule", "set Shape = file", "set Mesh file = open_mesh.off"),
+        ["case.prm"],
+        1,
+        ["case.prm:3: Capsule/Mesh file", "open_mesh.off", "edge"],
+    ),
+    "missing_mesh": (
+        section("Capsule", "set Shape = file", "set Mesh file = no.off"),
+        ["case.prm"],
+        1,
+        ["case.prm:3: Capsule/Mesh file", "no.off"],
+    ),
+    "output_is_a_file": (
+        section("Output", "set Directory = case.prm/output"),
+        ["case.prm"],
+        1,
+        ["case.prm:2: Output/Directory", "case.prm/output", "is not a folder"],
+    ),
+    "output_in_proc": (
+        section("Output", "set Directory = /proc/tanktread/output"),
+        ["case.prm"],
+        1,
+        ["case.prm:2: Output/Directory", "/proc/tanktread/output", "cannot be written"],
+    ),
+    "bad_override": (
+        section("Scene", "set End time = 1"),
+        ["case.prm", "--set", "Scene/End time=soon"],
+        1,
+        ['--set "Scene/End time=soon": Scene/End time = soon; allowed: a number >= 0'],
+    ),
+    "unknown_option": (
+        "",
+        ["--valdate", "case.prm"],
+        1,
+        ['unknown option "--valdate"; did you mean "--validate"?'],
+    ),
+    "missing_file": ("", ["no.prm"], 1, ['cannot read the parameter file "no.prm"']),
+    "no_file": ("", [], 1, ["no parameter file given", "usage"]),
+    # and, so that the cases above cannot pass with a program that refuses everything:
+    "good_input": (section("Scene", "set End time = 1"), ["--validate", "case.prm"], 0, ["valid"]),
+    "print_parameters": ("", ["--print-parameters"], 0, ["subsection Scene", "set Shear number G = 0.05"]),
+    "version": ("", ["--version"], 0, ["Tanktread", "deal.II"]),
+}
+
+
+def files_of(folder):
+    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*"))
+
+
+def run_case(program, name):
+    text, words, exit_code, expected = CASES[name]
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = pathlib.Path(temporary)
+        (folder / "case.prm").write_text(text)
+        for mesh in DATA.glob("*.off"):
+            shutil.copy(mesh, folder)
+        before = files_of(folder)
+        result = subprocess.run([program] + words, cwd=folder, capture_output=True, text=True, timeout=60)
+        after = files_of(folder)
+    said = result.stdout if exit_code == 0 else result.stderr
+    failures = [f"missing: {part}" for part in expected if part not in said]
+    if result.returncode != exit_code:
+        failures.append(f"exit code {result.returncode}, expected {exit_code}")
+    if after != before:
+        failures.append(f"written: {sorted(set(after) - set(before))}")
+    print(f"--- stdout\n{result.stdout}--- stderr\n{result.stderr}---")
+    print("\n".join(failures) if failures else "passed")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    if sys.argv[1:] == ["--list"]:
+        print(";".join(CASES), end="")
+    else:
+        sys.exit(run_case(str(pathlib.Path(sys.argv[1]).resolve()), sys.argv[2]))
