@@ -7,9 +7,9 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 
 namespace tanktread
 {
@@ -54,15 +54,14 @@ namespace tanktread
       return aside;
     }
 
+    /** Makes and removes a folder inside of `existing`: permission bits say nothing to root and about file systems that are not real. */
     void
-    check_writing(const fs::path &folder)
+    check_writing(const fs::path &folder, const fs::path &existing)
     {
-      const fs::path probe = folder / ".tanktread_write_test";
-      const bool     good  = static_cast<bool>(std::ofstream(probe) << "test" << std::flush);
-      const int      code  = errno;
-      fs::remove(probe);
-      if (!good)
-        refuse(folder, std::strerror(code));
+      std::string probe = (existing / ".tanktread_XXXXXX").string();
+      if (mkdtemp(&probe[0]) == nullptr)
+        refuse(folder, "\"" + existing.string() + "\": " + std::strerror(errno));
+      rmdir(probe.c_str());
     }
   } // namespace
 
@@ -82,8 +81,7 @@ namespace tanktread
       }
     if (!fs::is_directory(existing))
       refuse(path, "\"" + existing.string() + "\" is not a folder");
-    if (access(existing.c_str(), W_OK | X_OK) != 0)
-      refuse(path, "\"" + existing.string() + "\" (" + std::strerror(errno) + ")");
+    check_writing(path, existing);
   }
 
   std::string
@@ -96,7 +94,7 @@ namespace tanktread
     fs::create_directories(path, error);
     if (error)
       refuse(path, error.message());
-    check_writing(path);
+    check_writing(path, path);
     return aside;
   }
 } // namespace tanktread

@@ -175,12 +175,13 @@ namespace tanktread
       {
         const std::vector<std::string> next = split_section(parameter.section);
         text += change_section(section, next);
+        text += next == section ? "\n" : "";
         section = next;
 
         const std::string indent(2 * section.size(), ' ');
         text += as_comment(indent + "# ", parameter.documentation);
         text += as_comment(indent + "# ", "Allowed: " + parameter.allowed + ". Default: " + or_empty(parameter.default_value) + ".");
-        text += indent + "set " + parameter.name + " = " + parameter.value + "\n";
+        text += indent + "set " + parameter.name + " =" + (parameter.value.empty() ? "" : " " + parameter.value) + "\n";
       }
     return text + change_section(section, {});
   }

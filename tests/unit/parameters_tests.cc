@@ -113,12 +113,16 @@ TEST(Parameters, WrongValuesAreRefused)
   expect_error("Scene/Flow=quiescent", "Scene/Reduced bending modulus is 0");
   expect_error("Scene/Box side=1", "allowed: a number >= 3");
   expect_error("Scene/End time=-1", "allowed: a number >= 0");
-  expect_error("Capsule/Shape=file", "Capsule/Mesh file");
   expect_error("Shell mesh/Level=7", "allowed: a whole number from 0 to 6");
   expect_error("Shell mesh/Quadrature=2", "allowed: one of 1, 3, 6, 7, 12");
   expect_error("Output/Checkpoint interval=1", "not available in this version, allowed: 0");
   expect_error("Output/Directory=/dev/null/output", "is not a folder");
   expect_error("Output/Directory=", "is empty");
+}
+
+TEST(Parameters, ShapeFromFileNeedsAFile)
+{
+  EXPECT_NE(error_of({"Capsule/Shape=file"}).find("Capsule/Mesh file"), std::string::npos);
 }
 
 TEST(Parameters, ErrorsOfAllSectionsComeTogetherWithTheirLines)
@@ -145,7 +149,7 @@ TEST(Parameters, MeshFileIsTakenRelativeToTheParameterFile)
     }
   catch (const InputError &error)
     {
-      EXPECT_NE(std::string(error.what()).find("x.prm:2: Capsule/Mesh file"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("x.prm:3: Capsule/Mesh file"), std::string::npos) << error.what();
     }
 }
 

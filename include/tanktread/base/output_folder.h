@@ -9,7 +9,7 @@
 namespace tanktread
 {
   /**
-   * Checks that `folder` can be made and written, without changing anything on disk.
+   * Checks that `folder` can be made and written, leaving nothing behind on disk.
    * @throws InputError naming the folder and the reason.
    */
   void
