@@ -30,11 +30,10 @@ namespace tanktread
       for (unsigned int i = 0; i < support_size_; ++i)
         for (unsigned int j = 0; j < support_size_; ++j)
           {
-            const std::vector<int> &row               = rows[supports[face + i]];
+            const std::vector<int> &row             = rows[supports[face + i]];
             places_[(face + i) * support_size_ + j] = int(std::lower_bound(row.begin(), row.end(), supports[face + j]) - row.begin());
           }
   }
-
 
 
   SparseMatrix
@@ -44,7 +43,6 @@ namespace tanktread
     std::vector<double> zeros(columns_.size(), 0.);
     return Eigen::Map<const SparseMatrix>(n, n, Eigen::Index(columns_.size()), row_starts_.data(), columns_.data(), zeros.data());
   }
-
 
 
   SparseMatrix

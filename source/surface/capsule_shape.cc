@@ -56,7 +56,7 @@ namespace tanktread
       for (Eigen::Index q = 0; q < wanted.rows(); ++q)
         wanted.row(q) = weights[q] * shape_point(parameters, wanted.row(q).transpose().normalized());
 
-      const SparseMatrix                                                mass = mass_matrix(surface, weights);
+      const SparseMatrix                                                  mass = mass_matrix(surface, weights);
       Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower | Eigen::Upper> solver(mass);
       solver.setTolerance(1e-15);
       return solver.solveWithGuess(surface.S().transpose() * wanted, x);
@@ -68,7 +68,7 @@ namespace tanktread
       ControlPoints vertices(mesh.vertices.size(), 3);
       for (Eigen::Index i = 0; i < vertices.rows(); ++i)
         vertices.row(i) = mesh.vertices[i];
-      const Eigen::SparseMatrix<double>           stencils = vertex_limit_stencils(mesh);
+      const Eigen::SparseMatrix<double>            stencils = vertex_limit_stencils(mesh);
       Eigen::SparseLU<Eigen::SparseMatrix<double>> solver(stencils);
       if (solver.info() != Eigen::Success)
         throw InputError("No subdivision surface passes through the vertices of the mesh file.");
@@ -89,29 +89,29 @@ namespace tanktread
   } // namespace
 
 
-
   void
   CapsuleShapeParameters::add_parameters(dealii::ParameterHandler &prm)
   {
     using dealii::Patterns::Double;
     using dealii::Patterns::List;
     prm.enter_subsection("Capsule");
-    add_enum_parameter(prm,
-                       "Shape",
-                       shape,
-                       {{"sphere", Shape::sphere},
-                        {"ellipsoid", Shape::ellipsoid},
-                        {"oblate", Shape::oblate},
-                        {"biconcave", Shape::biconcave},
-                        {"file", Shape::file}},
-                       "Initial shape; every shape is scaled to the volume of the unit sphere.");
+    add_enum_parameter(
+      prm,
+      "Shape",
+      shape,
+      {{"sphere", Shape::sphere}, {"ellipsoid", Shape::ellipsoid}, {"oblate", Shape::oblate}, {"biconcave", Shape::biconcave}, {"file", Shape::file}},
+      "Initial shape; every shape is scaled to the volume of the unit sphere.");
     prm.add_parameter("Axes", axes, "Ratio of the semi-axes of an ellipsoid along x, y and z, before it is turned.", List(Double(0.), 3, 3));
-    prm.add_parameter("Aspect ratio", aspect_ratio, "Semi-axis of an oblate spheroid along z, its axis of symmetry, over those along x and y, before it is turned.", Double(0.));
-    prm.add_parameter("Inclination", inclination, "Angle in units of pi by which the shape is turned about the y axis; positive turns the x axis towards the z axis.");
+    prm.add_parameter("Aspect ratio",
+                      aspect_ratio,
+                      "Semi-axis of an oblate spheroid along z, its axis of symmetry, over those along x and y, before it is turned.",
+                      Double(0.));
+    prm.add_parameter("Inclination",
+                      inclination,
+                      "Angle in units of pi by which the shape is turned about the y axis; positive turns the x axis towards the z axis.");
     prm.add_parameter("Mesh file", file, "Closed triangle mesh (.off or .obj) whose vertices lie on the surface of the capsule, for the shape 'file'.");
     prm.leave_subsection();
   }
-
 
 
   void
@@ -127,7 +127,6 @@ namespace tanktread
     if (shape == Shape::file && file.empty())
       throw InputError("Capsule/Mesh file: the shape 'file' needs the name of a mesh file.");
   }
-
 
 
   FittedShape
@@ -149,7 +148,6 @@ namespace tanktread
     normalise(result.topology, parameters.inclination * M_PI, result.control_points);
     return result;
   }
-
 
 
   TriangleMesh

@@ -32,14 +32,13 @@ namespace tanktread
   } // namespace
 
 
-
   std::vector<Eigen::Vector2d>
   shear_plane_contour(const TriangleMesh &positions)
   {
     // Vertices with y = 0 count as y > 0. So a face that is cut has one edge that enters y < 0 and one that leaves it, and the neighbour across the
     // leaving edge enters there: following them runs through a loop.
-    using Edge         = std::pair<int, int>;
-    const auto is_above = [&](const int v) { return positions.vertices[v][1] >= 0.; };
+    using Edge                    = std::pair<int, int>;
+    const auto           is_above = [&](const int v) { return positions.vertices[v][1] >= 0.; };
     std::map<Edge, Edge> next; // entering edge, as its face sees it -> the same of the next face
     for (const auto &face : positions.faces)
       {

@@ -17,12 +17,10 @@ namespace tanktread
     {
       const double t = (1. + std::sqrt(5.)) / 2.;
       return {{{-1, t, 0}, {1, t, 0}, {-1, -t, 0}, {1, -t, 0}, {0, -1, t}, {0, 1, t}, {0, -1, -t}, {0, 1, -t}, {t, 0, -1}, {t, 0, 1}, {-t, 0, -1}, {-t, 0, 1}},
-              {{{0, 11, 5}},  {{0, 5, 1}},  {{0, 1, 7}}, {{0, 7, 10}}, {{0, 10, 11}}, {{1, 5, 9}}, {{5, 11, 4}},
-               {{11, 10, 2}}, {{10, 7, 6}}, {{7, 1, 8}}, {{3, 9, 4}},  {{3, 4, 2}},   {{3, 2, 6}}, {{3, 6, 8}},
-               {{3, 8, 9}},   {{4, 9, 5}},  {{2, 4, 11}}, {{6, 2, 10}}, {{8, 6, 7}},  {{9, 8, 1}}}};
+              {{{0, 11, 5}}, {{0, 5, 1}}, {{0, 1, 7}}, {{0, 7, 10}}, {{0, 10, 11}}, {{1, 5, 9}}, {{5, 11, 4}}, {{11, 10, 2}}, {{10, 7, 6}}, {{7, 1, 8}},
+               {{3, 9, 4}},  {{3, 4, 2}}, {{3, 2, 6}}, {{3, 6, 8}},  {{3, 8, 9}},   {{4, 9, 5}}, {{2, 4, 11}}, {{6, 2, 10}},  {{8, 6, 7}},  {{9, 8, 1}}}};
     }
   } // namespace
-
 
 
   double
@@ -31,7 +29,6 @@ namespace tanktread
     const double c = 3. / 8. + std::cos(2. * M_PI / valence) / 4.;
     return (5. / 8. - c * c) / valence;
   }
-
 
 
   TriangleMesh
@@ -56,8 +53,7 @@ namespace tanktread
             neighbours[a] += coarse.vertices[b];
             ++valence[a];
           }
-        fine.faces.insert(fine.faces.end(),
-                          {{{face[0], middle[0], middle[2]}}, {{middle[0], face[1], middle[1]}}, {{middle[2], middle[1], face[2]}}, middle});
+        fine.faces.insert(fine.faces.end(), {{{face[0], middle[0], middle[2]}}, {{middle[0], face[1], middle[1]}}, {{middle[2], middle[1], face[2]}}, middle});
       }
     for (std::size_t v = 0; v < n; ++v)
       {
@@ -66,7 +62,6 @@ namespace tanktread
       }
     return fine;
   }
-
 
 
   TriangleMesh

@@ -132,7 +132,6 @@ namespace tanktread
   } // namespace
 
 
-
   TriangleMesh
   read_triangle_mesh(const std::string &file)
   {

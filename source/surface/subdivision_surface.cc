@@ -20,7 +20,7 @@ namespace tanktread
 {
   namespace
   {
-    namespace Far = OpenSubdiv::Far;
+    namespace Far       = OpenSubdiv::Far;
     using LimitStencils = Far::LimitStencilTableReal<double>;
 
     std::unique_ptr<Far::TopologyRefiner>
@@ -60,8 +60,8 @@ namespace tanktread
     std::unique_ptr<const LimitStencils>
     make_limit_stencils(const Far::TopologyRefiner &refiner, const std::vector<int> &faces, const TriangleQuadrature &quadrature, const Derivatives derivatives)
     {
-      using Factory           = Far::LimitStencilTableFactoryReal<double>;
-      const Eigen::VectorXd s = quadrature.points.col(0), t = quadrature.points.col(1);
+      using Factory               = Far::LimitStencilTableFactoryReal<double>;
+      const Eigen::VectorXd     s = quadrature.points.col(0), t = quadrature.points.col(1);
       Factory::LocationArrayVec locations(faces.size());
       for (std::size_t f = 0; f < faces.size(); ++f)
         {
@@ -129,12 +129,15 @@ namespace tanktread
      * derivatives a third time). That happens next to extraordinary vertices only. Differences of the first derivatives, which are right, tell where.
      */
     void
-    correct_second_derivatives(const TriangleMesh &topology, const Far::TopologyRefiner &refiner, const TriangleQuadrature &quadrature, std::vector<SparseMatrix> &matrices)
+    correct_second_derivatives(const TriangleMesh         &topology,
+                               const Far::TopologyRefiner &refiner,
+                               const TriangleQuadrature   &quadrature,
+                               std::vector<SparseMatrix>  &matrices)
     {
       const std::vector<int> faces = find_irregular_faces(topology);
       if (faces.empty())
         return;
-      const double       step     = 1e-4;
+      const double       step    = 1e-4;
       TriangleQuadrature shifted = quadrature;
       shifted.points.col(0).array() += step;
       const auto         table      = make_limit_stencils(refiner, faces, shifted, Derivatives::first);
@@ -154,7 +157,6 @@ namespace tanktread
           }
     }
   } // namespace
-
 
 
   SubdivisionSurface::SubdivisionSurface(const TriangleMesh &topology, const TriangleQuadrature &quadrature, const Derivatives derivatives)
@@ -204,7 +206,6 @@ namespace tanktread
   }
 
 
-
   const SparseMatrix &
   SubdivisionSurface::matrix(const unsigned int kind) const
   {
@@ -212,7 +213,6 @@ namespace tanktread
       throw std::logic_error("SubdivisionSurface was built without the derivatives that are asked for.");
     return matrices_[kind];
   }
-
 
 
   SparseMatrix

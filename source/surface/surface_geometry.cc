@@ -58,7 +58,6 @@ namespace tanktread
   } // namespace
 
 
-
   double
   enclosed_volume(const SubdivisionSurface &surface, const ControlPoints &x)
   {
@@ -70,13 +69,11 @@ namespace tanktread
   }
 
 
-
   double
   surface_area(const SubdivisionSurface &surface, const ControlPoints &x)
   {
     return area_weights(surface, x).sum();
   }
-
 
 
   ControlPoints
@@ -86,7 +83,7 @@ namespace tanktread
     ControlPoints X = surface.S() * x, a_1 = surface.S_1() * x, a_2 = surface.S_2() * x;
     for (Eigen::Index q = 0; q < X.rows(); ++q)
       {
-        const double w = surface.weights()[q] / 3.;
+        const double w     = surface.weights()[q] / 3.;
         const Vector value = X.row(q), first = a_1.row(q), second = a_2.row(q);
         X.row(q)   = w * first.cross(second);
         a_1.row(q) = w * second.cross(value);
@@ -97,7 +94,6 @@ namespace tanktread
     gradient += surface.S_2().transpose() * a_2;
     return gradient;
   }
-
 
 
   SparseMatrix
@@ -118,8 +114,9 @@ namespace tanktread
             for (unsigned int q = f * n_points; q < (f + 1) * n_points; ++q)
               {
                 const double *S = surface.stencils(q), *S_1 = S + n, *S_2 = S_1 + n;
-                v += (surface.weights()[q] / 3.) * ((S[i] * S_1[j] - S_1[i] * S[j]) * a_2.row(q) + (S_1[i] * S_2[j] - S_2[i] * S_1[j]) * X.row(q) +
-                                                    (S_2[i] * S[j] - S[i] * S_2[j]) * a_1.row(q));
+                v += (surface.weights()[q] / 3.) *
+                  ((S[i] * S_1[j] - S_1[i] * S[j]) * a_2.row(q) + (S_1[i] * S_2[j] - S_2[i] * S_1[j]) * X.row(q) +
+                   (S_2[i] * S[j] - S[i] * S_2[j]) * a_1.row(q));
               }
             const int row    = surface.support(f)[i];
             const int length = 3 * pattern.row_length(row);
@@ -135,7 +132,6 @@ namespace tanktread
   }
 
 
-
   ControlPoints
   normals(const SubdivisionSurface &surface, const ControlPoints &x)
   {
@@ -143,13 +139,11 @@ namespace tanktread
   }
 
 
-
   Eigen::VectorXd
   area_weights(const SubdivisionSurface &surface, const ControlPoints &x)
   {
     return surface.weights().cwiseProduct(area_vectors(surface, x).rowwise().norm());
   }
-
 
 
   Eigen::VectorXd
@@ -161,7 +155,6 @@ namespace tanktread
   }
 
 
-
   Eigen::VectorXd
   gaussian_curvature(const SubdivisionSurface &surface, const ControlPoints &x)
   {
@@ -169,7 +162,6 @@ namespace tanktread
       return (f.kappa11 * f.kappa22 - f.kappa12 * f.kappa12) / (f.a11 * f.a22 - f.a12 * f.a12);
     });
   }
-
 
 
   InertiaEllipsoid

@@ -39,18 +39,15 @@ namespace tanktread
   } // namespace
 
 
-
   SparseMatrix
   mass_matrix(const SubdivisionSurface &surface, const Eigen::VectorXd &point_weights)
   {
     if (point_weights.size() != Eigen::Index(surface.n_points()))
-      throw std::logic_error("mass_matrix() got " + std::to_string(point_weights.size()) + " weights for " + std::to_string(surface.n_points()) +
-                             " points.");
+      throw std::logic_error("mass_matrix() got " + std::to_string(point_weights.size()) + " weights for " + std::to_string(surface.n_points()) + " points.");
     return assemble(surface, [&](const unsigned int q, const auto &stencils, RowMajorMatrix &block) {
       block.noalias() += (point_weights[q] * stencils.row(0).transpose()) * stencils.row(0);
     });
   }
-
 
 
   SparseMatrix

@@ -17,7 +17,7 @@ namespace tanktread
     face_text(const TriangleMesh &mesh, const std::size_t f)
     {
       return "face " + std::to_string(f) + " (vertices " + std::to_string(mesh.faces[f][0]) + ", " + std::to_string(mesh.faces[f][1]) + ", " +
-             std::to_string(mesh.faces[f][2]) + ")";
+        std::to_string(mesh.faces[f][2]) + ")";
     }
 
     void
@@ -48,8 +48,8 @@ namespace tanktread
           {
             const int a = mesh.faces[f][i], b = mesh.faces[f][(i + 1) % 3];
             if (a < 0 || a >= int(mesh.vertices.size()))
-              throw InputError(name + ": " + face_text(mesh, f) + " names a vertex that does not exist; there are " +
-                               std::to_string(mesh.vertices.size()) + ".");
+              throw InputError(name + ": " + face_text(mesh, f) + " names a vertex that does not exist; there are " + std::to_string(mesh.vertices.size()) +
+                               ".");
             if (a == b)
               throw InputError(name + ": " + face_text(mesh, f) + " names a vertex twice.");
             const auto [entry, is_new] = edges.emplace(std::make_pair(a, b), f);
@@ -93,8 +93,7 @@ namespace tanktread
                     break;
                   }
               ++n_in_fan;
-            }
-          while (u != some_neighbour[v] && n_in_fan <= n_faces[v]);
+          } while (u != some_neighbour[v] && n_in_fan <= n_faces[v]);
           if (n_in_fan != n_faces[v])
             throw InputError(name + ": the surface touches itself at vertex " + std::to_string(v) + ".");
           if (n_faces[v] < 3)
@@ -124,7 +123,6 @@ namespace tanktread
           throw InputError(name + ": the surface has several components; no chain of edges joins vertex 0 and vertex " + std::to_string(v) + ".");
     }
   } // namespace
-
 
 
   void

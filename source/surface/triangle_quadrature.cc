@@ -72,7 +72,6 @@ namespace tanktread
   } // namespace
 
 
-
   TriangleQuadrature
   triangle_quadrature(const unsigned int n_points, const unsigned int n_subdivisions)
   {

@@ -28,6 +28,13 @@ namespace tanktread
     SparseMatrix
     block_matrix() const;
 
+    /** Number of entries of block_matrix(). */
+    Eigen::Index
+    n_block_entries() const
+    {
+      return 9 * Eigen::Index(columns_.size());
+    }
+
     /** First value of row I in scalar_matrix(). */
     int
     row_start(const int row) const

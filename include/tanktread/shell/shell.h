@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: energy, nodal forces and tangent of an elastic shell.
+
+#ifndef tanktread_shell_shell_h
+#define tanktread_shell_shell_h
+
+#include <tanktread/shell/metric.h>
+#include <tanktread/shell/shell_parameters.h>
+#include <tanktread/surface/subdivision_surface.h>
+
+#include <vector>
+
+namespace tanktread
+{
+  /**
+   * A closed elastic shell of vanishing thickness: a membrane whose undeformed state is `reference`, and Helfrich bending about a reference curvature.
+   * doc/theory.md, section 2.
+   *
+   * With a bending modulus of zero nothing of bending is computed, and the surface needs first derivatives only. All sums run in a fixed order.
+   */
+  class Shell
+  {
+  public:
+    /**
+     * Keeps `surface` by reference; it has to have first derivatives, and second ones if the bending modulus is not zero (std::logic_error otherwise). Throws
+     * InputError on parameters that check() refuses or negative moduli, NumericalError where the reference shape is degenerate.
+     */
+    Shell(const SubdivisionSurface &surface, const ShellParameters &parameters, const ShellModuli &moduli, const ControlPoints &reference);
+
+    struct Energy
+    {
+      double membrane, bending;
+    };
+
+    // x holds the control points, NP x 3. Where a face is degenerate at a quadrature point (det a <= 0 or not finite) the functions throw NumericalError.
+
+    /** Membrane energy and Helfrich energy; the latter is reported in the same way for both forms of the bending work. */
+    Energy
+    energy(const ControlPoints &x) const;
+
+    /** Nodal forces f_I = -dE/dx_I, NP x 3; with BendingForm::moment_only the bending part is minus the coefficients of its virtual work. */
+    ControlPoints
+    force(const ControlPoints &x) const;
+
+    /**
+     * The same forces, and K = -df/dx, 3 NP x 3 NP with the pattern of AssemblyPattern::block_matrix(). K is allocated unless it has that pattern from an earlier
+     * call; its values are overwritten. It is symmetric unless bending works in the form moment_only.
+     */
+    void
+    force_and_tangent(const ControlPoints &x, ControlPoints &f, SparseMatrix &K) const;
+
+    /** Undeformed area that each quadrature point stands for, w_q sqrt(det abar) (length n_points). */
+    const Eigen::VectorXd &
+    reference_weights() const
+    {
+      return reference_weights_;
+    }
+
+  private:
+    struct FaceBuffers;
+
+    MembraneDensity
+    membrane(const Metric &metric, unsigned int point) const;
+
+    void
+    load_face(unsigned int face, const ControlPoints &x, FaceBuffers &buffers) const;
+
+    void
+    differentiate_points(unsigned int face, bool with_tangent, FaceBuffers &buffers) const;
+
+    const SubdivisionSurface    &surface_;
+    ShellParameters              parameters_;
+    ShellModuli                  moduli_;
+    unsigned int                 n_rows_; // 2 without bending, 5 with it
+    std::vector<ReferenceMetric> reference_metric_;
+    Eigen::VectorXd              reference_weights_, reference_curvature_;
+  };
+} // namespace tanktread
+
+#endif

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: energy, nodal forces and tangent of an elastic shell.
+
+#include <tanktread/base/exceptions.h>
+#include <tanktread/shell/face_kernels.h>
+#include <tanktread/shell/helfrich.h>
+#include <tanktread/shell/neo_hookean.h>
+#include <tanktread/shell/shell.h>
+#include <tanktread/shell/skalak.h>
+#include <tanktread/surface/surface_geometry.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace tanktread
+{
+  /** Workspace for one face; 3-vectors padded to 4 numbers as in face_kernels.h. */
+  struct Shell::FaceBuffers
+  {
+    FaceBuffers(const SubdivisionSurface &surface, const unsigned int n_rows, const bool with_tangent)
+      : stencils{nullptr, surface.n_stencils() * surface.support_size(), surface.n_points_per_face(), n_rows, surface.support_size()}
+      , x(4 * stencils.n, 0.)
+      , y(4 * stencils.n_points * n_rows)
+      , gradients(y.size(), 0.)
+      , f(4 * stencils.n)
+      , hessians(with_tangent ? stencils.n_points : 0)
+      , scratch(with_tangent ? 4 * n_rows * stencils.n : 0)
+      , block(with_tangent ? 9 * stencils.n * stencils.n : 0)
+    {}
+
+    FaceStencils                           stencils;
+    std::vector<double>                    x, y, gradients, f;
+    std::vector<SurfaceDerivativesTangent> hessians;
+    std::vector<double>                    scratch, block;
+  };
+
+  namespace
+  {
+    /** 3 of 4 numbers as a vector. */
+    Eigen::Map<const Eigen::Vector3d>
+    vector(const std::vector<double> &padded, const unsigned int i)
+    {
+      return Eigen::Map<const Eigen::Vector3d>(padded.data() + 4 * i);
+    }
+
+    /** The five rows of a point. */
+    SurfaceDerivatives
+    derivatives(const std::vector<double> &padded, const unsigned int point)
+    {
+      return Eigen::Map<const SurfaceDerivatives, 0, Eigen::OuterStride<4>>(padded.data() + 20 * point);
+    }
+
+    /** Metric at a point of a face; throws if the surface is degenerate there. */
+    Metric
+    metric_at(const std::vector<double> &y, const unsigned int row, const unsigned int face)
+    {
+      const auto   a_1 = vector(y, row), a_2 = vector(y, row + 1);
+      const Metric metric{a_1.squaredNorm(), a_1.dot(a_2), a_2.squaredNorm()};
+      const double det = metric.determinant();
+      if (!(det > 0.) || !std::isfinite(det))
+        throw NumericalError("The shell is degenerate in face " + std::to_string(face) + ": det a is " + std::to_string(det) + ".");
+      return metric;
+    }
+
+    /** Adds the derivatives of weight * w by a_1 and a_2 to the first two rows of a padded gradient. */
+    void
+    add_membrane_gradient(const MembraneDensity &w, const double weight, const Eigen::Vector3d &a_1, const Eigen::Vector3d &a_2, double *gradient)
+    {
+      const Eigen::Vector3d n = weight * w.gradient;
+      Eigen::Map<Eigen::Vector3d>(gradient) += 2. * n[0] * a_1 + n[1] * a_2;
+      Eigen::Map<Eigen::Vector3d>(gradient + 4) += n[1] * a_1 + 2. * n[2] * a_2;
+    }
+
+    /** Adds the second derivatives of weight * w by (a_1, a_2) to the corner of `hessian`. */
+    void
+    add_membrane_hessian(const MembraneDensity     &w,
+                         const double               weight,
+                         const Eigen::Vector3d     &a_1,
+                         const Eigen::Vector3d     &a_2,
+                         SurfaceDerivativesTangent &hessian)
+    {
+      const Eigen::Vector3d       n = weight * w.gradient;
+      Eigen::Matrix<double, 6, 3> metric_gradient; // derivatives of a11, a12, a22
+      metric_gradient << 2. * a_1, a_2, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), a_1, 2. * a_2;
+      Eigen::Matrix<double, 6, 6> h = metric_gradient * (weight * w.hessian) * metric_gradient.transpose();
+      for (unsigned int c = 0; c < 3; ++c)
+        {
+          h(c, c) += 2. * n[0];
+          h(c + 3, c + 3) += 2. * n[2];
+          h(c, c + 3) += n[1];
+          h(c + 3, c) += n[1];
+        }
+      hessian.topLeftCorner<6, 6>() += h;
+    }
+
+    void
+    scatter_force(const SubdivisionSurface &surface, const unsigned int face, const std::vector<double> &gradient, ControlPoints &f)
+    {
+      const int *support = surface.support(face);
+      for (unsigned int i = 0; i < surface.support_size(); ++i)
+        f.row(support[i]) -= vector(gradient, i);
+    }
+
+    void
+    scatter_tangent(const SubdivisionSurface &surface, const unsigned int face, const std::vector<double> &block, double *values)
+    {
+      const AssemblyPattern &pattern = surface.pattern();
+      const unsigned int     n       = surface.support_size();
+      const int             *support = surface.support(face), *places = pattern.places(face);
+      for (unsigned int i = 0; i < n; ++i, places += n)
+        for (unsigned int c = 0; c < 3; ++c)
+          {
+            double       *row    = values + 9 * pattern.row_start(support[i]) + 3 * c * pattern.row_length(support[i]);
+            const double *source = block.data() + (3 * c * n + i) * n;
+            for (unsigned int j = 0; j < n; ++j)
+              {
+                double *entry = row + 3 * places[j];
+                entry[0] += source[j];
+                entry[1] += source[n * n + j];
+                entry[2] += source[2 * n * n + j];
+              }
+          }
+    }
+  } // namespace
+
+
+  Shell::Shell(const SubdivisionSurface &surface, const ShellParameters &parameters, const ShellModuli &moduli, const ControlPoints &reference)
+    : surface_(surface)
+    , parameters_(parameters)
+    , moduli_(moduli)
+    , n_rows_(moduli.bending_modulus > 0. ? 5 : 2)
+    , reference_metric_(surface.n_points())
+    , reference_weights_(area_weights(surface, reference))
+    , reference_curvature_(Eigen::VectorXd::Zero(surface.n_points()))
+  {
+    parameters.check();
+    for (const double modulus : {moduli.surface_young_modulus, moduli.bending_modulus})
+      if (!(modulus >= 0.) || !std::isfinite(modulus))
+        throw InputError("A modulus of the shell is " + std::to_string(modulus) + "; it must not be negative.");
+
+    const ControlPoints a_1 = surface.S_1() * reference, a_2 = surface.S_2() * reference;
+    for (unsigned int q = 0; q < surface.n_points(); ++q)
+      reference_metric_[q] = ReferenceMetric(Metric{a_1.row(q).squaredNorm(), a_1.row(q).dot(a_2.row(q)), a_2.row(q).squaredNorm()});
+
+    if (n_rows_ == 5)
+      {
+        const Eigen::VectorXd curvature = mean_curvature(surface, reference); // also makes sure that the surface has second derivatives
+        if (parameters.reference == ReferenceCurvature::initial)
+          reference_curvature_ = curvature;
+        else if (parameters.reference == ReferenceCurvature::value)
+          reference_curvature_.setConstant(parameters.reference_curvature_value);
+      }
+  }
+
+
+  MembraneDensity
+  Shell::membrane(const Metric &metric, const unsigned int point) const
+  {
+    return parameters_.law == MembraneLaw::skalak ? skalak(metric, reference_metric_[point], moduli_.surface_shear_modulus(), parameters_.area_dilatation)
+                                                  : neo_hookean(metric, reference_metric_[point], moduli_.surface_shear_modulus());
+  }
+
+
+  void
+  Shell::load_face(const unsigned int face, const ControlPoints &x, FaceBuffers &buffers) const
+  {
+    const int *support = surface_.support(face);
+    for (unsigned int i = 0; i < surface_.support_size(); ++i)
+      Eigen::Map<Eigen::RowVector3d>(buffers.x.data() + 4 * i) = x.row(support[i]);
+    buffers.stencils.values = surface_.stencils(face * surface_.n_points_per_face()) + surface_.support_size(); // without the row of values
+    apply_stencils(buffers.stencils, buffers.x.data(), buffers.y.data());
+  }
+
+
+  void
+  Shell::differentiate_points(const unsigned int face, const bool with_tangent, FaceBuffers &buffers) const
+  {
+    const auto bending = parameters_.form == BendingForm::variational ? variational_bending : moment_only_bending;
+    for (unsigned int k = 0; k < surface_.n_points_per_face(); ++k)
+      {
+        const unsigned int         point    = face * surface_.n_points_per_face() + k;
+        const Metric               metric   = metric_at(buffers.y, k * n_rows_, face);
+        double                    *gradient = buffers.gradients.data() + 4 * k * n_rows_;
+        SurfaceDerivativesTangent *hessian  = with_tangent ? &buffers.hessians[k] : nullptr;
+        if (n_rows_ == 5)
+          {
+            SurfaceDerivatives                                       by_y;
+            Eigen::Map<SurfaceDerivatives, 0, Eigen::OuterStride<4>> padded(gradient);
+            bending(derivatives(buffers.y, k), surface_.weights()[point] * moduli_.bending_modulus, reference_curvature_[point], by_y, hessian);
+            padded = by_y;
+          }
+        else
+          {
+            std::fill_n(gradient, 8, 0.);
+            if (with_tangent)
+              hessian->topLeftCorner<6, 6>().setZero();
+          }
+        const MembraneDensity w   = membrane(metric, point);
+        const Eigen::Vector3d a_1 = vector(buffers.y, k * n_rows_), a_2 = vector(buffers.y, k * n_rows_ + 1);
+        add_membrane_gradient(w, reference_weights_[point], a_1, a_2, gradient);
+        if (with_tangent)
+          add_membrane_hessian(w, reference_weights_[point], a_1, a_2, *hessian);
+      }
+    std::fill(buffers.f.begin(), buffers.f.end(), 0.);
+    add_transposed_stencils(buffers.stencils, buffers.gradients.data(), buffers.f.data());
+  }
+
+
+  Shell::Energy
+  Shell::energy(const ControlPoints &x) const
+  {
+    FaceBuffers buffers(surface_, n_rows_, false);
+    Energy      energy{0., 0.};
+    for (unsigned int face = 0; face < surface_.n_faces(); ++face)
+      {
+        load_face(face, x, buffers);
+        for (unsigned int k = 0; k < surface_.n_points_per_face(); ++k)
+          {
+            const unsigned int point = face * surface_.n_points_per_face() + k;
+            energy.membrane += reference_weights_[point] * membrane(metric_at(buffers.y, k * n_rows_, face), point).energy;
+            if (n_rows_ == 5)
+              energy.bending += surface_.weights()[point] * bending_energy(derivatives(buffers.y, k), moduli_.bending_modulus, reference_curvature_[point]);
+          }
+      }
+    return energy;
+  }
+
+
+  ControlPoints
+  Shell::force(const ControlPoints &x) const
+  {
+    FaceBuffers   buffers(surface_, n_rows_, false);
+    ControlPoints f = ControlPoints::Zero(x.rows(), 3);
+    for (unsigned int face = 0; face < surface_.n_faces(); ++face)
+      {
+        load_face(face, x, buffers);
+        differentiate_points(face, false, buffers);
+        scatter_force(surface_, face, buffers.f, f);
+      }
+    return f;
+  }
+
+
+  void
+  Shell::force_and_tangent(const ControlPoints &x, ControlPoints &f, SparseMatrix &K) const
+  {
+    if (K.rows() != 3 * x.rows() || !K.isCompressed() || K.nonZeros() != surface_.pattern().n_block_entries())
+      K = surface_.pattern().block_matrix();
+    else
+      K.coeffs().setZero();
+
+    FaceBuffers buffers(surface_, n_rows_, true);
+    const bool  symmetric = n_rows_ == 2 || parameters_.form == BendingForm::variational;
+    f.setZero(x.rows(), 3);
+    for (unsigned int face = 0; face < surface_.n_faces(); ++face)
+      {
+        load_face(face, x, buffers);
+        differentiate_points(face, true, buffers);
+        scatter_force(surface_, face, buffers.f, f);
+        stencil_congruence(buffers.stencils, buffers.hessians.front().data(), symmetric, buffers.scratch.data(), buffers.block.data());
+        scatter_tangent(surface_, face, buffers.block, K.valuePtr());
+      }
+  }
+} // namespace tanktread
