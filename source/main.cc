@@ -4,7 +4,7 @@
 #include <tanktread/base/command_line.h>
 #include <tanktread/base/mpi_errors.h>
 #include <tanktread/base/version.h>
-#include <tanktread/simulation/parameters.h>
+#include <tanktread/simulation/simulation.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -43,7 +43,10 @@ namespace
     if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
       std::cout << text << std::flush;
     if (command_line.action == tanktread::CommandLine::Action::run)
-      tanktread::read_parameters(command_line.file, command_line.overrides);
+      {
+        const tanktread::Parameters parameters = tanktread::read_parameters(command_line.file, command_line.overrides);
+        tanktread::Simulation(parameters, MPI_COMM_WORLD).run();
+      }
   }
 } // namespace
 

@@ -10,35 +10,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 namespace tanktread
 {
-  void
-  FluidMeshParameters::add_parameters(dealii::ParameterHandler &prm)
-  {
-    using dealii::Patterns::Double;
-    prm.add_parameter("Finest cell", finest_cell, "Side of the cells at the shell, in a; the mesh takes the next smaller side its octree has.", Double(1e-4, 10.));
-    prm.add_parameter("Coarsest cell", coarsest_cell, "Side of the cells away from the shell, in a; adjusted to divide the box.", Double(1e-4, 100.));
-    prm.add_parameter("Band width", band_width, "Distance from the shell within which cells are finest ones, in finest cells.", Double(1., 20.));
-  }
-
-
-  void
-  FluidMeshParameters::check(const double box_side) const
-  {
-    std::ostringstream message;
-    if (coarsest_cell > 0.5 * box_side)
-      message << "Fluid mesh/Coarsest cell is " << coarsest_cell << "; allowed: at most half of Scene/Box side, " << 0.5 * box_side << '.';
-    else if (finest_cell > coarsest_cell)
-      message << "Fluid mesh/Finest cell is " << finest_cell << "; allowed: at most Fluid mesh/Coarsest cell, " << coarsest_cell << '.';
-    else if (box_side / finest_cell > 1 << 18)
-      message << "Fluid mesh/Finest cell is " << finest_cell << "; allowed: at least " << box_side / (1 << 18) << " in this box.";
-    if (!message.str().empty())
-      throw InputError(message.str());
-  }
-
-
   std::uint64_t
   CellKey::packed() const
   {

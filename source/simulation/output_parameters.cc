@@ -17,8 +17,8 @@ namespace tanktread
     prm.enter_subsection("Output");
     prm.add_parameter("Directory",
                       directory,
-                      "Folder of the results, made if missing, in the folder in which the program is started. A former run in it is moved to "
-                      "<Directory>.previous.",
+                      "Folder of the results, made if missing, in the folder in which the program is started; empty: output/<name of the parameter file>. "
+                      "A former run in it is moved to <Directory>.previous.",
                       dealii::Patterns::DirectoryName());
     prm.add_parameter("History interval", history_interval, "Time between rows of history.csv; 0: a row each step.", Double(0.));
     prm.add_parameter("Field interval", field_interval, "Time between VTU files of fluid and shell; 0: only the first and the last.", Double(0.));

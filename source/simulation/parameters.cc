@@ -32,17 +32,23 @@ namespace tanktread
         }
     }
 
-    /** Makes the name of the mesh file independent of the working directory: a relative one is meant relative to the folder of the parameter file. */
     void
-    find_mesh_file(dealii::ParameterHandler &prm, const Parameters &parameters)
+    set(dealii::ParameterHandler &prm, const std::string &section, const std::string &name, const std::string &value)
     {
-      namespace fs = std::filesystem;
-      if (parameters.capsule.file.empty())
-        return;
-      const fs::path folder = fs::absolute(parameters.file).parent_path();
-      prm.enter_subsection("Capsule");
-      prm.set("Mesh file", (folder / parameters.capsule.file).lexically_normal().string());
+      prm.enter_subsection(section);
+      prm.set(name, value);
       prm.leave_subsection();
+    }
+
+    /** The names of files that depend on that of the parameter file: a relative mesh file lies in its folder, the default output folder is named after it. */
+    void
+    complete_file_names(dealii::ParameterHandler &prm, const Parameters &parameters)
+    {
+      const std::filesystem::path file = std::filesystem::absolute(parameters.file);
+      if (!parameters.capsule.file.empty())
+        set(prm, "Capsule", "Mesh file", (file.parent_path() / parameters.capsule.file).lexically_normal().string());
+      if (parameters.output.directory.empty())
+        set(prm, "Output", "Directory", "output/" + file.stem().string());
     }
   } // namespace
 
@@ -63,10 +69,11 @@ namespace tanktread
   {
     scene.add_parameters(prm);
     capsule.add_parameters(prm);
+    shell.add_parameters(prm);
     shell_mesh.add_parameters(prm);
-    prm.enter_subsection("Fluid mesh");
     fluid_mesh.add_parameters(prm);
-    prm.leave_subsection();
+    time.add_parameters(prm);
+    solver.add_parameters(prm);
     output.add_parameters(prm);
   }
 
@@ -76,7 +83,9 @@ namespace tanktread
     const std::vector<std::function<void()>> checks = {[&] { scene.check(); },
                                                        [&] { capsule.check(); },
                                                        [&] { check_mesh_file(capsule); },
+                                                       [&] { shell.check(); },
                                                        [&] { fluid_mesh.check(scene.box_side); },
+                                                       [&] { solver.check(); },
                                                        [&] { output.check(); },
                                                        [&] { check_output_folder(output.directory); }};
 
@@ -102,7 +111,7 @@ namespace tanktread
     parameters.add_parameters(prm);
     const ParameterSource source = read_parameter_file(prm, file, overrides);
     parameters.file              = file;
-    find_mesh_file(prm, parameters);
+    complete_file_names(prm, parameters);
     parameters.check(source);
     parameters.used = parameters_as_prm(prm);
     return parameters;

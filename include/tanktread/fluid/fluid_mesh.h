@@ -4,9 +4,10 @@
 #ifndef tanktread_fluid_fluid_mesh_h
 #define tanktread_fluid_fluid_mesh_h
 
-#include <deal.II/base/parameter_handler.h>
 #include <deal.II/base/point.h>
 #include <deal.II/distributed/tria.h>
+
+#include <tanktread/fluid/fluid_mesh_parameters.h>
 
 #include <array>
 #include <cstdint>
@@ -15,21 +16,6 @@
 
 namespace tanktread
 {
-  /** Section "Fluid mesh". Lengths in a. */
-  struct FluidMeshParameters
-  {
-    double finest_cell   = 0.15625;
-    double coarsest_cell = 2.5;
-    double band_width    = 1.5;
-
-    void
-    add_parameters(dealii::ParameterHandler &prm);
-
-    /** Throws InputError when the cells do not fit into a box of side `box_side`. */
-    void
-    check(double box_side) const;
-  };
-
   /** Level and integer position of a cube: along each axis it covers [i h_l, (i+1) h_l] from the lower corner of the box, h_l = coarsest / 2^l. */
   struct CellKey
   {

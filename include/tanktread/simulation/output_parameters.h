@@ -16,7 +16,7 @@ namespace tanktread
   /** Section "Output". Intervals in units of time of the scene. */
   struct OutputParameters
   {
-    std::string directory           = "output";
+    std::string directory;                // empty: output/<name of the parameter file>, filled in by read_parameters()
     double      history_interval    = 0.; // 0: each step
     double      field_interval      = 1.; // 0: first and last only
     double      checkpoint_interval = 0.; // 0: none

@@ -4,9 +4,12 @@
 #ifndef tanktread_simulation_parameters_h
 #define tanktread_simulation_parameters_h
 
-#include <tanktread/fluid/fluid_mesh.h>
+#include <tanktread/fluid/fluid_mesh_parameters.h>
+#include <tanktread/shell/shell_parameters.h>
 #include <tanktread/simulation/output_parameters.h>
 #include <tanktread/simulation/scene_parameters.h>
+#include <tanktread/simulation/time_stepping.h>
+#include <tanktread/solver/solver_parameters.h>
 #include <tanktread/surface/capsule_shape.h>
 
 #include <string>
@@ -32,8 +35,11 @@ namespace tanktread
   {
     SceneParameters        scene;
     CapsuleShapeParameters capsule;
+    ShellParameters        shell;
     ShellMeshParameters    shell_mesh;
     FluidMeshParameters    fluid_mesh;
+    TimeParameters         time;
+    SolverParameters       solver;
     OutputParameters       output;
 
     std::string file; // name of the parameter file
@@ -52,8 +58,8 @@ namespace tanktread
   };
 
   /**
-   * Reads `file`, applies `overrides` ("Section/Parameter=value") and checks the result. The name of a mesh file is taken relative to the
-   * folder of `file`, Output/Directory relative to the working directory.
+   * Reads `file`, applies `overrides` ("Section/Parameter=value") and checks the result. The name of a mesh file is taken relative to the folder of `file`,
+   * Output/Directory relative to the working directory; when it is empty it becomes output/<name of `file` without extension>.
    * @throws InputError with one line for each error.
    */
   Parameters

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: the fluid's fields as VTU.
+
+#ifndef tanktread_fluid_field_output_h
+#define tanktread_fluid_field_output_h
+
+#include <tanktread/fluid/taylor_hood_space.h>
+
+#include <string>
+
+namespace tanktread
+{
+  /**
+   * Writes velocity (disturbance plus (shear_rate z, 0, 0)), pressure and the rank of each cell to `<folder>/<name>_<counter>.pvtu` and its VTU pieces; cells are
+   * drawn with their quadratic velocity as 2 x 2 x 2 linear ones.
+   *
+   * @param fields condensed coefficients as in State::fluid. Collective. @return name of the PVTU file, without the folder.
+   */
+  std::string
+  write_fluid_fields(const std::string &folder, const std::string &name, unsigned int counter, const TaylorHoodSpace &space, const FluidBlockVector &fields, double shear_rate);
+} // namespace tanktread
+
+#endif

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: everything about the fluid that lives as long as its mesh.
+
+#ifndef tanktread_fluid_fluid_h
+#define tanktread_fluid_fluid_h
+
+#include <tanktread/fluid/stokes_preconditioner.h>
+
+#include <memory>
+
+namespace tanktread
+{
+  /** A mesh and the spaces, matrices and multigrid hierarchy on it, rebuilt together whenever the mesh changes. */
+  class Fluid
+  {
+  public:
+    Fluid(MPI_Comm communicator, double side, const FluidMeshParameters &parameters)
+      : mesh_(communicator, side, parameters)
+    {}
+
+    /** Refines around `points`; see FluidMesh::adapt(). Returns true if the mesh changed: all vectors of before are void then. Collective. */
+    bool
+    adapt(const std::vector<dealii::Point<3>> &points)
+    {
+      // What stands on the mesh must go before the mesh changes.
+      preconditioner_.reset();
+      stokes_.reset();
+      space_.reset();
+      const bool changed = mesh_.adapt(points);
+      space_             = std::make_unique<TaylorHoodSpace>(mesh_);
+      stokes_            = std::make_unique<StokesOperator>(*space_);
+      preconditioner_    = std::make_unique<StokesPreconditioner>(*stokes_);
+      return changed;
+    }
+
+    const FluidMesh &
+    mesh() const
+    {
+      return mesh_;
+    }
+    const TaylorHoodSpace &
+    space() const
+    {
+      return *space_;
+    }
+    const StokesOperator &
+    stokes() const
+    {
+      return *stokes_;
+    }
+    const StokesPreconditioner &
+    preconditioner() const
+    {
+      return *preconditioner_;
+    }
+
+  private:
+    FluidMesh                             mesh_;
+    std::unique_ptr<TaylorHoodSpace>      space_;
+    std::unique_ptr<StokesOperator>       stokes_;
+    std::unique_ptr<StokesPreconditioner> preconditioner_;
+  };
+} // namespace tanktread
+
+#endif

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: what a run leaves in its folder.
+
+#ifndef tanktread_simulation_results_h
+#define tanktread_simulation_results_h
+
+#include <tanktread/base/csv_writer.h>
+#include <tanktread/fluid/fluid.h>
+#include <tanktread/shell/shell.h>
+#include <tanktread/simulation/surface_vtu.h>
+#include <tanktread/solver/state.h>
+#include <tanktread/surface/surface_geometry.h>
+#include <tanktread/surface/triangle_mesh.h>
+
+#include <string>
+
+namespace tanktread
+{
+  /** One row of history.csv. */
+  struct Observables
+  {
+    double           time = 0.;
+    InertiaEllipsoid ellipsoid{};
+    double           volume = 0., volume_error = 0., area = 0.;
+    Shell::Energy    energy{};
+    double           dissipation   = 0.; // mu times the integral of |grad u|^2, u the disturbance velocity
+    double           pressure_jump = 0.;
+    double           step          = 0.;
+    unsigned int     newton_iterations = 0, linear_iterations = 0;
+    double           n_cells = 0.;
+    double           wall_time = 0.;
+  };
+
+  /** The shell's fixed data that observables and pictures need; all kept by reference. */
+  struct ShellView
+  {
+    const TriangleMesh       &topology;
+    const SubdivisionSurface &surface;
+    const Shell              &shell;
+    double                    initial_volume;
+  };
+
+  /** Shape, energies and dissipation of a state. Collective. */
+  Observables
+  observe(const ShellView &shell, const Fluid &fluid, const State &state);
+
+  /**
+   * history.csv (one row a step), contours.csv (the cut with the plane y = 0 at each field output: time, x, z), shell_NNNN.vtu and fluid_NNNN.pvtu with shell.pvd and
+   * fluid.pvd. The first rank writes all but the pieces of the fluid.
+   */
+  class Results
+  {
+  public:
+    /** The folder must exist. Throws InputError if it cannot be written. */
+    Results(const std::string &folder, bool first_rank);
+
+    void
+    add_history(const Observables &observables);
+
+    /** Writes shell, contour and fluid. `velocity`: of the control points, NP x 3. Collective. */
+    void
+    add_fields(double time, const ShellView &shell, const ControlPoints &velocity, const Fluid &fluid, const State &state, double shear_rate);
+
+    /** The last good state of a run that failed: failed_shell.vtu. Returns the file's name. */
+    std::string
+    write_failed(const ShellView &shell, const State &state) const;
+
+  private:
+    void
+    write_shell(const std::string &file, const ShellView &shell, const State &state, const ControlPoints &velocity) const;
+    void
+    add_contour(double time, const TriangleMesh &limit_surface);
+
+    std::string  folder_;
+    bool         first_rank_;
+    unsigned int n_fields_ = 0;
+    CsvWriter    history_, contours_;
+    PvdFile      shell_series_, fluid_series_;
+  };
+} // namespace tanktread
+
+#endif

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: the nonlinear system of a time level.
+
+#ifndef tanktread_solver_newton_solver_h
+#define tanktread_solver_newton_solver_h
+
+#include <tanktread/base/timings.h>
+#include <tanktread/fluid/linear_solver.h>
+#include <tanktread/solver/monolithic_system.h>
+#include <tanktread/solver/solver_parameters.h>
+#include <tanktread/solver/state.h>
+
+#include <string>
+#include <vector>
+
+namespace tanktread
+{
+  /** What a solve did; never ignore `converged`. */
+  struct NewtonReport
+  {
+    bool                converged         = false;
+    unsigned int        newton_iterations = 0;
+    unsigned int        linear_iterations = 0;
+    std::vector<double> residuals; // norm before the first and after each iteration
+    std::vector<double> step_lengths; // of the line search
+    std::string         message;   // why it failed
+  };
+
+  /** A residual (r_u, r_p; r_x; r_V) with the shell's forces that went into it. */
+  struct Residual
+  {
+    FluidBlockVector fluid;  // A u - B^T p - R(f + pi v), -B u
+    ControlPoints    x;      // x - xhat - tau (J u + undisturbed flow)
+    double           volume; // V - V0
+    double           norm;   // see NewtonSolver
+  };
+
+  /**
+   * Solves for all unknowns of a time level together, by Newton's method with the complete derivative:
+   *
+   *     A u - B^T p = R(x)(f(x) + pi v(x)),   B u = 0,   V(x) = V0,   x = xhat + tau (J(x) u + u_inf(x)).
+   *
+   * xhat and tau carry the time scheme: x_n and dt for backward Euler. The norm of a residual is the root of the squares of |r_u| / (|R f| + |R v|), the l2 norm of
+   * load vectors relative to the shell's forces and unit pressure, of the root mean square of r_x over a, and of r_V / V0.
+   */
+  class NewtonSolver
+  {
+  public:
+    /** All arguments are kept by reference. `volume` is V0. */
+    NewtonSolver(const SolverParameters &parameters, const Shell &shell, const SubdivisionSurface &surface, Coupling &coupling, double volume, UndisturbedFlow flow, Timings &timings);
+
+    /** To be called for every new fluid mesh. */
+    void
+    attach(const Fluid &fluid);
+
+    /**
+     * Advances `state`, which holds the initial guess, to the solution. If the report says that it did not converge, `state` is as it was. Collective.
+     */
+    NewtonReport
+    solve(State &state, const ControlPoints &xhat, double tau);
+
+    /** The flow at fixed shell `state.x`: u, p and pi such that no volume flows through the shell. Returns the velocity of the control points. Throws NumericalError if it fails. */
+    ControlPoints
+    solve_flow(State &state, unsigned int &linear_iterations);
+
+  private:
+    Residual
+    residual(const State &state, const ControlPoints &xhat, double tau);
+    LinearReport
+    linear_solve(const Residual &r, const State &state, double tau, double tolerance, State &increment);
+    /** Moves `state` along `increment` with the longest step length of 1, 1/2, ... that reduces the residual; returns 0 if there is none. */
+    double
+    line_search(State &state, Residual &r, const State &increment, const ControlPoints &xhat, double tau);
+    bool
+    is_solved(const Residual &r) const;
+
+    const SolverParameters   &parameters_;
+    const Shell              &shell_;
+    const SubdivisionSurface &surface_;
+    Coupling                 &coupling_;
+    const double              volume_;
+    const UndisturbedFlow     flow_;
+    Timings                  &timings_;
+    const Fluid              *fluid_ = nullptr;
+  };
+} // namespace tanktread
+
+#endif

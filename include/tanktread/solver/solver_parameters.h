@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: section "Solver" of the parameter file.
+
+#ifndef tanktread_solver_solver_parameters_h
+#define tanktread_solver_solver_parameters_h
+
+namespace dealii
+{
+  class ParameterHandler;
+}
+
+namespace tanktread
+{
+  /** How the shell follows the fluid. */
+  enum class TimeCoupling
+  {
+    implicit_newton, // all unknowns together at the new time level
+    explicit_euler   // the shell moves with the velocity of the old time level; for comparison only
+  };
+
+  /** How the discrete fluid sees the shell's forces. */
+  enum class Interface
+  {
+    plain, // finite-element consistent spreading, first order
+    enriched
+  };
+
+  struct SolverParameters
+  {
+    TimeCoupling coupling              = TimeCoupling::implicit_newton;
+    Interface    interface             = Interface::plain;
+    double       newton_tolerance      = 1e-5;
+    double       volume_tolerance      = 1e-9;
+    double       linear_tolerance      = 1e-3;
+    unsigned int max_newton_iterations = 12;
+    unsigned int max_linear_iterations = 200;
+
+    /** Declares section "Solver" in `prm`; parsing fills this object, which has to outlive `prm`. */
+    void
+    add_parameters(dealii::ParameterHandler &prm);
+
+    /** Throws InputError for what this version does not have. */
+    void
+    check() const;
+  };
+} // namespace tanktread
+
+#endif

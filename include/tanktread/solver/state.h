@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: the unknowns of a time level.
+
+#ifndef tanktread_solver_state_h
+#define tanktread_solver_state_h
+
+#include <tanktread/fluid/types.h>
+#include <tanktread/surface/types.h>
+
+namespace tanktread
+{
+  /** The undisturbed flow (shear_rate * z, 0, 0); all fluid unknowns are disturbances of it. */
+  struct UndisturbedFlow
+  {
+    double shear_rate = 0.;
+
+    /** Velocity at positions given as rows. */
+    ControlPoints
+    velocity(const ControlPoints &positions) const
+    {
+      ControlPoints result = ControlPoints::Zero(positions.rows(), 3);
+      result.col(0)        = shear_rate * positions.col(2);
+      return result;
+    }
+  };
+
+  /** Unknowns (u, p, pi, x) of one time level. */
+  struct State
+  {
+    ControlPoints    x;             // control points, NP x 3, in a
+    FluidBlockVector fluid;         // disturbance velocity (blocks 0-2) and pressure (block 3), condensed: constrained entries are zero
+    double           pressure_jump = 0.; // pi: pressure of the capsule's interior above that of the continuous field
+  };
+} // namespace tanktread
+
+#endif

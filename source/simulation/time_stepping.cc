@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: section "Time", and the time schemes as formulas.
+
+#include <tanktread/base/enum_parameter.h>
+#include <tanktread/simulation/time_stepping.h>
+
+namespace tanktread
+{
+  void
+  TimeParameters::add_parameters(dealii::ParameterHandler &prm)
+  {
+    using dealii::Patterns::Double;
+    prm.enter_subsection("Time");
+    add_enum_parameter(prm,
+                       "Scheme",
+                       scheme,
+                       {{"BDF2", TimeScheme::bdf2}, {"backward Euler", TimeScheme::backward_euler}},
+                       "BDF2: second order, variable steps, first step backward Euler; backward Euler: first order.");
+    prm.add_parameter("Step", step, "Length of a time step, in the scene's unit of time. A rejected step is tried with half its length and grows back.", Double(1e-8, 1e3));
+    prm.add_parameter("Steady tolerance",
+                      steady_tolerance,
+                      "The run ends when semi-axes (in a) and inclination (in radians) change slower than this per unit of time; 0: at the end time only.",
+                      Double(0., 1.));
+    prm.leave_subsection();
+  }
+
+
+  ImplicitStep
+  backward_euler_step(const ControlPoints &x_n, const double dt)
+  {
+    return {x_n, dt};
+  }
+
+
+  ImplicitStep
+  bdf2_step(const ControlPoints &x_n, const ControlPoints &x_previous, const double dt, const double dt_previous)
+  {
+    const double omega = dt / dt_previous, denominator = 1. + 2. * omega;
+    return {((1. + omega) * (1. + omega) * x_n - omega * omega * x_previous) / denominator, dt * (1. + omega) / denominator};
+  }
+} // namespace tanktread

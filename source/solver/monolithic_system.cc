@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: the linear system of a Newton iteration and its preconditioner.
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/numbers.h>
+
+#include <tanktread/base/exceptions.h>
+#include <tanktread/solver/monolithic_system.h>
+#include <tanktread/surface/surface_geometry.h>
+#include <tanktread/surface/surface_operators.h>
+
+namespace tanktread
+{
+  FluidBlockVector
+  monolithic_vector(const TaylorHoodSpace &space, const unsigned int n_control_points)
+  {
+    const MPI_Comm     communicator = space.mesh.communicator();
+    const unsigned int size         = 1 + 3 * n_control_points;
+    dealii::IndexSet   owned(size);
+    if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
+      owned.add_range(0, size);
+    FluidBlockVector result;
+    space.reinit(result, shell_block + 1);
+    result.block(shell_block).reinit(owned, communicator);
+    result.collect_sizes();
+    return result;
+  }
+
+
+  ShellUnknowns
+  shell_unknowns(const FluidBlockVector &vector, const MPI_Comm communicator)
+  {
+    const auto         &block = vector.block(shell_block);
+    std::vector<double> values(block.size());
+    std::copy(block.begin(), block.end(), values.begin());
+    MPI_Bcast(values.data(), values.size(), MPI_DOUBLE, 0, communicator);
+    return {values[0], Eigen::Map<const ControlPoints>(values.data() + 1, (values.size() - 1) / 3, 3)};
+  }
+
+
+  void
+  set_shell_unknowns(FluidBlockVector &vector, const ShellUnknowns &unknowns)
+  {
+    auto &block = vector.block(shell_block);
+    if (block.locally_owned_size() == 0)
+      return;
+    block.local_element(0) = unknowns.pressure_jump;
+    std::copy(unknowns.force.data(), unknowns.force.data() + unknowns.force.size(), block.begin() + 1);
+  }
+
+
+  void
+  MonolithicOperator::vmult(FluidBlockVector &dst, const FluidBlockVector &src) const
+  {
+    const auto         &coupling = shell_.coupling();
+    const MPI_Comm      communicator = stokes_.space().mesh.communicator();
+    const ShellUnknowns unknowns     = shell_unknowns(src, communicator);
+    const ControlPoints dw           = shell_.velocity_response(coupling.velocity_moments(src));
+    const ControlPoints dx           = shell_.tau() * dw;
+
+    stokes_.vmult(dst, src);
+    coupling.spread_with_motion(-unknowns.force - unknowns.pressure_jump * shell_.volume_gradient(), dx, -shell_.density(), dst);
+    set_shell_unknowns(dst, {-shell_.volume_gradient().cwiseProduct(dw).sum(), unknowns.force + shell_.stiffness_times(dx)});
+  }
+
+
+  MonolithicPreconditioner::MonolithicPreconditioner(const StokesPreconditioner &stokes,
+                                                     const LinearisedShell      &shell,
+                                                     const SubdivisionSurface   &surface,
+                                                     const ControlPoints        &x,
+                                                     const double                h)
+    : stokes_(stokes)
+    , shell_(shell)
+    , indicator_schur_(enclosed_volume(surface, x))
+    , velocity_scratch_(stokes.stokes().space().velocity.partitioner())
+  {
+    if (shell.tau() == 0.)
+      return;
+    const double k1 = 2., k2 = dealii::numbers::PI / h;
+    const double c0 = 4. * k1 * k2 / (k1 + k2), c1 = 4. / (k1 + k2);
+    Z_ = for_three_components(c0 * mass_matrix(surface, area_weights(surface, x)) + c1 * laplace_beltrami(surface, x));
+    factorisation_.compute(SparseMatrix(Z_ + shell.tau() * shell.stiffness()));
+    if (factorisation_.info() != Eigen::Success)
+      throw NumericalError("The shell's block of the preconditioner is singular.");
+  }
+
+
+  ControlPoints
+  MonolithicPreconditioner::shell_force(const ControlPoints &r_F) const
+  {
+    if (shell_.tau() == 0.)
+      return r_F;
+    return nodal(Z_ * factorisation_.solve(flat(r_F)));
+  }
+
+
+  void
+  MonolithicPreconditioner::vmult(FluidBlockVector &dst, const FluidBlockVector &src) const
+  {
+    const MPI_Comm      communicator = stokes_.stokes().space().mesh.communicator();
+    const ShellUnknowns r            = shell_unknowns(src, communicator);
+    const ShellUnknowns z{-r.pressure_jump / indicator_schur_, shell_force(r.force)};
+
+    stokes_.apply_inverse_pressure_mass(dst.block(pressure_block), src.block(pressure_block));
+    dst.block(pressure_block) *= -1.;
+    for (unsigned int c = 0; c < 3; ++c)
+      dst.block(c) = src.block(c);
+    stokes_.stokes().add_pressure_gradient(dst, dst.block(pressure_block));
+    shell_.coupling().spread(z.force + z.pressure_jump * shell_.volume_gradient(), dst);
+    for (unsigned int c = 0; c < 3; ++c)
+      {
+        velocity_scratch_ = dst.block(c);
+        stokes_.apply_inverse_laplace(dst.block(c), velocity_scratch_);
+      }
+    set_shell_unknowns(dst, z);
+  }
+} // namespace tanktread
