@@ -38,14 +38,24 @@ namespace tanktread
       return fs::exists(folder / "history.csv", error);
     }
 
-    /** Moves `folder` to `folder`.previous. A folder of that name which is not a run is somebody's and stays. */
+    /** A run has no folders inside; what has a run further down is somebody's collection of runs. */
+    bool
+    holds_nothing_but_a_run(const fs::path &folder)
+    {
+      for (const auto &entry : fs::recursive_directory_iterator(folder))
+        if (entry.path().filename() == "history.csv" && entry.path().parent_path() != folder)
+          return false;
+      return holds_a_run(folder);
+    }
+
+    /** Moves `folder` to `folder`.previous. Something of that name which is more than a run is somebody's and stays. */
     fs::path
     move_aside(const fs::path &folder)
     {
       const fs::path  aside = folder.string() + ".previous";
       std::error_code error;
-      if (fs::exists(aside, error) && !holds_a_run(aside))
-        refuse(folder, "it holds a former run, which cannot be moved to \"" + aside.string() + "\" because that exists and is no run");
+      if (fs::exists(aside, error) && !(fs::is_directory(aside, error) && holds_nothing_but_a_run(aside)))
+        refuse(folder, "it holds a former run, which cannot be moved to \"" + aside.string() + "\" because that exists and is no run, or more than one");
       fs::remove_all(aside, error);
       if (!error)
         fs::rename(folder, aside, error);

@@ -401,6 +401,19 @@ TEST(OutputFolder, FolderThatIsNoRunStays)
   EXPECT_EQ(contents(folder / "history.csv"), "1");
 }
 
+TEST(OutputFolder, RunsInsideOfFormerRunsAreNotRemoved)
+{
+  const TemporaryFolder temporary;
+  const fs::path        folder = temporary.path / "run";
+  fs::create_directories(folder / "nested");
+  write(folder / "history.csv", "1");
+  write(folder / "nested/history.csv", "2");
+  EXPECT_EQ(prepare_output_folder(folder.string()), folder.string() + ".previous");
+  write(folder / "history.csv", "3");
+  EXPECT_NE(output_folder_error(folder).find("more than one"), std::string::npos);
+  EXPECT_EQ(contents(folder.string() + ".previous/nested/history.csv"), "2");
+}
+
 TEST(OutputFolder, NamesFolderAndReason)
 {
   const TemporaryFolder temporary;
