@@ -79,20 +79,27 @@ namespace tanktread
       return table;
     }
 
-    SparseMatrix
-    sparse_rows(const LimitStencils &table, const std::vector<double> &values, const unsigned int n_columns)
+    /** One matrix with the rows of the table for each kind of weights. */
+    std::vector<SparseMatrix>
+    sparse_rows(const LimitStencils &table, const std::vector<const std::vector<double> *> &kinds, const unsigned int n_columns)
     {
-      const auto                         &sizes = table.GetSizes();
-      const auto                         &index = table.GetControlIndices();
-      std::vector<Eigen::Triplet<double>> entries;
-      entries.reserve(values.size());
-      std::size_t k = 0;
+      const auto      &sizes = table.GetSizes();
+      const auto      &index = table.GetControlIndices();
+      std::vector<int> starts(sizes.size() + 1, 0), permutation(index.size()), columns(index.size());
+      std::partial_sum(sizes.begin(), sizes.end(), starts.begin() + 1);
+      std::iota(permutation.begin(), permutation.end(), 0);
       for (std::size_t row = 0; row < sizes.size(); ++row)
-        for (int i = 0; i < sizes[row]; ++i, ++k)
-          entries.emplace_back(int(row), index[k], values[k]);
-      SparseMatrix matrix(sizes.size(), n_columns);
-      matrix.setFromTriplets(entries.begin(), entries.end());
-      return matrix;
+        std::sort(permutation.begin() + starts[row], permutation.begin() + starts[row + 1], [&index](const int i, const int j) { return index[i] < index[j]; });
+      std::transform(permutation.begin(), permutation.end(), columns.begin(), [&index](const int i) { return index[i]; });
+
+      std::vector<SparseMatrix> matrices;
+      std::vector<double>       values(index.size());
+      for (const auto *kind : kinds)
+        {
+          std::transform(permutation.begin(), permutation.end(), values.begin(), [&kind](const int i) { return (*kind)[i]; });
+          matrices.emplace_back(Eigen::Map<const SparseMatrix>(sizes.size(), n_columns, values.size(), starts.data(), columns.data(), values.data()));
+        }
+      return matrices;
     }
 
     /** The control points that occur in the rows of each face, ascending. */
@@ -141,7 +148,7 @@ namespace tanktread
       TriangleQuadrature shifted = quadrature;
       shifted.points.col(0).array() += step;
       const auto         table      = make_limit_stencils(refiner, faces, shifted, Derivatives::first);
-      const SparseMatrix S_1_beside = sparse_rows(*table, table->GetDuWeights(), topology.vertices.size());
+      const SparseMatrix S_1_beside = sparse_rows(*table, {&table->GetDuWeights()}, topology.vertices.size()).front();
       const int          n_points   = int(quadrature.weights.size());
       for (std::size_t f = 0; f < faces.size(); ++f)
         for (int p = 0; p < n_points; ++p)
@@ -179,8 +186,7 @@ namespace tanktread
       values.insert(values.end(), {&table->GetDuWeights(), &table->GetDvWeights()});
     if (derivatives == Derivatives::second)
       values.insert(values.end(), {&table->GetDuuWeights(), &table->GetDuvWeights(), &table->GetDvvWeights()});
-    for (const auto *v : values)
-      matrices_.push_back(sparse_rows(*table, *v, n_control_points_));
+    matrices_ = sparse_rows(*table, values, n_control_points_);
     if (derivatives == Derivatives::second)
       correct_second_derivatives(topology, *refiner, quadrature, matrices_);
 

@@ -44,20 +44,24 @@ namespace tanktread
     {
       EdgeMap edges;
       for (std::size_t f = 0; f < mesh.faces.size(); ++f)
-        for (unsigned int i = 0; i < 3; ++i)
-          {
-            const int a = mesh.faces[f][i], b = mesh.faces[f][(i + 1) % 3];
-            if (a < 0 || a >= int(mesh.vertices.size()))
+        {
+          const auto &face = mesh.faces[f];
+          for (const int v : face)
+            if (v < 0 || v >= int(mesh.vertices.size()))
               throw InputError(name + ": " + face_text(mesh, f) + " names a vertex that does not exist; there are " + std::to_string(mesh.vertices.size()) +
                                ".");
-            if (a == b)
-              throw InputError(name + ": " + face_text(mesh, f) + " names a vertex twice.");
-            const auto [entry, is_new] = edges.emplace(std::make_pair(a, b), f);
-            if (!is_new)
-              throw InputError(name + ": edge " + std::to_string(a) + "-" + std::to_string(b) + " runs in the same direction in " +
-                               face_text(mesh, entry->second) + " and " + face_text(mesh, f) +
-                               "; neighbouring faces have to be oriented alike, and an edge has two faces.");
-          }
+          if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0])
+            throw InputError(name + ": " + face_text(mesh, f) + " names a vertex twice.");
+          for (unsigned int i = 0; i < 3; ++i)
+            {
+              const int a = face[i], b = face[(i + 1) % 3];
+              const auto [entry, is_new] = edges.emplace(std::make_pair(a, b), f);
+              if (!is_new)
+                throw InputError(name + ": edge " + std::to_string(a) + "-" + std::to_string(b) + " runs in the same direction in " +
+                                 face_text(mesh, entry->second) + " and " + face_text(mesh, f) +
+                                 "; neighbouring faces have to be oriented alike, and an edge has two faces.");
+            }
+        }
       for (const auto &[edge, f] : edges)
         if (edges.count({edge.second, edge.first}) == 0)
           throw InputError(name + ": edge " + std::to_string(edge.first) + "-" + std::to_string(edge.second) + " of " + face_text(mesh, f) +
