@@ -4,7 +4,8 @@
 """Usage: bad_input.py --list | bad_input.py PROGRAM CASE
 
 Each case starts PROGRAM in an empty folder that holds case.prm (and the mesh files of data/). It passes when the exit code is the one wanted, all
-expected texts are on standard error (or output, for exit code 0), and the folder holds the same files as before.
+expected texts are on standard error (or output, for exit code 0), and the folder holds the same files as before. A computation that fails (exit code 2)
+leaves its folder behind.
 """
 
 import pathlib
@@ -96,6 +97,14 @@ CASES = {
     ),
     "missing_file": ("", ["no.prm"], 1, ['cannot read the parameter file "no.prm"']),
     "no_file": ("", [], 1, ["no parameter file given", "usage"]),
+    "failing_computation": (
+        section("Shell mesh", "set Level = 1")
+        + section("Fluid mesh", "set Finest cell = 0.625")
+        + section("Solver", "set Maximal linear iterations = 1"),
+        ["case.prm"],
+        2,
+        ["numerical failure", "did not converge", "iterations"],
+    ),
     # and, so that the cases above cannot pass with a program that refuses everything:
     "good_input": (section("Scene", "set End time = 1"), ["--validate", "case.prm"], 0, ["valid"]),
     "print_parameters": ("", ["--print-parameters"], 0, ["subsection Scene", "set Shear number G = 0.05"]),
@@ -121,7 +130,9 @@ def run_case(program, name):
     failures = [f"missing: {part}" for part in expected if part not in said]
     if result.returncode != exit_code:
         failures.append(f"exit code {result.returncode}, expected {exit_code}")
-    if after != before:
+    if exit_code == 2:
+        failures += [f"not written: {name}" for name in ("output/case/log.txt", "output/case/used_parameters.prm") if name not in after]
+    elif after != before:
         failures.append(f"written: {sorted(set(after) - set(before))}")
     print(f"--- stdout\n{result.stdout}--- stderr\n{result.stderr}---")
     print("\n".join(failures) if failures else "passed")
