@@ -50,6 +50,9 @@ def select_columns(history, names, target):
     missing = [name for name in names if not rows or name not in rows[0]]
     if missing:
         sys.exit(f"{history}: no rows, or no column {', '.join(missing)}")
+    for row in rows:
+        if "theta" in row and abs(float(row.get("D_xz", 1))) < 1e-8:
+            row["theta"] = "nan"  # a round section has no direction
     with open(target, "w", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(names)
