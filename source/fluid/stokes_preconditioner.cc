@@ -13,7 +13,7 @@ namespace tanktread
     amg.elliptic              = true;
     amg.higher_order_elements = true;
     amg.n_cycles              = 1;
-    amg.smoother_sweeps       = 2;
+    amg.smoother_sweeps       = 1;
     amg.aggregation_threshold = 0.02;
     multigrid_.initialize(stokes.laplace(), amg);
 

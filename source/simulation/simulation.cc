@@ -129,6 +129,7 @@ namespace tanktread
       return guess;
     const double ratio = length / previous_length_;
     guess.x += ratio * (state_.x - previous_state_->x);
+    guess.force += ratio * (state_.force - previous_state_->force);
     guess.pressure_jump += ratio * (state_.pressure_jump - previous_state_->pressure_jump);
     guess.fluid.sadd(1. + ratio, -ratio, previous_state_->fluid);
     return guess;

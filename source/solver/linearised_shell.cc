@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: what the shell contributes to the Newton system.
 
+#include <deal.II/base/numbers.h>
+
 #include <tanktread/base/exceptions.h>
 #include <tanktread/solver/linearised_shell.h>
 #include <tanktread/surface/surface_geometry.h>
+#include <tanktread/surface/surface_operators.h>
+
+#include <string>
 
 namespace tanktread
 {
@@ -22,36 +27,49 @@ namespace tanktread
   }
 
 
-  ShellForces::ShellForces(const Shell &shell, const SubdivisionSurface &surface, const ControlPoints &x)
-    : force(shell.force(x))
-    , volume_gradient(tanktread::volume_gradient(surface, x))
-    , volume(enclosed_volume(surface, x))
-  {}
+  namespace
+  {
+    /** Z = c0 M_s + c1 L_s of LinearisedShell. */
+    SparseMatrix
+    inverse_mobility(const SubdivisionSurface &surface, const ControlPoints &x, const double h)
+    {
+      const double k1 = 2., k2 = dealii::numbers::PI / h;
+      const double c0 = 4. * k1 * k2 / (k1 + k2), c1 = 4. / (k1 + k2);
+      return for_three_components(c0 * mass_matrix(surface, area_weights(surface, x)) + c1 * laplace_beltrami(surface, x));
+    }
+
+
+    void
+    factorise(Factorisation &factorisation, const SparseMatrix &matrix, const std::string &what)
+    {
+      factorisation.compute(matrix);
+      if (factorisation.info() != Eigen::Success)
+        throw NumericalError(what + " is singular.");
+    }
+  } // namespace
 
 
   LinearisedShell::LinearisedShell(const Shell              &shell,
                                    const SubdivisionSurface &surface,
                                    const Coupling           &coupling,
-                                   const ControlPoints      &x,
-                                   const ShellForces        &forces,
+                                   const State              &state,
                                    const PointVelocity      &velocity,
-                                   const double              pressure_jump,
-                                   const double              tau)
+                                   const double              tau,
+                                   const double              h)
     : coupling_(coupling)
     , tau_(tau)
-    , volume_gradient_(forces.volume_gradient)
-    , density_(coupling.density(forces.force + pressure_jump * forces.volume_gradient))
+    , volume_gradient_(tanktread::volume_gradient(surface, state.x))
+    , density_(coupling.density(state.force + state.pressure_jump * volume_gradient_))
   {
     if (tau == 0.)
       return;
     ControlPoints force;
-    shell.force_and_tangent(x, force, stiffness_);
-    stiffness_ -= pressure_jump * volume_hessian(surface, x);
-
-    const SparseMatrix response = for_three_components(coupling.mass()) - tau * coupling.gradient_matrix(velocity);
-    response_.compute(response);
-    if (response_.info() != Eigen::Success)
-      throw NumericalError("The time step is so long that the shell's motion in the present velocity gradient is singular.");
+    shell.force_and_tangent(state.x, force, stiffness_);
+    pressure_stiffness_ = state.pressure_jump * volume_hessian(surface, state.x);
+    stiffness_ -= pressure_stiffness_;
+    Z_ = inverse_mobility(surface, state.x, h);
+    factorise(response_, for_three_components(coupling.mass()) - tau * coupling.gradient_matrix(velocity), "The motion of the shell in the velocity gradient, for this time step,");
+    factorise(implicit_shell_, Z_ + tau * stiffness_, "The shell's implicit operator, for this time step,");
   }
 
 
@@ -77,5 +95,32 @@ namespace tanktread
     if (tau_ == 0.)
       return ControlPoints::Zero(dx.rows(), 3);
     return nodal(stiffness_ * flat(dx));
+  }
+
+
+  ControlPoints
+  LinearisedShell::damped(const ControlPoints &force) const
+  {
+    if (tau_ == 0.)
+      return force;
+    return nodal(Z_ * implicit_shell_.solve(flat(force)));
+  }
+
+
+  ControlPoints
+  LinearisedShell::displacement_of_force(const ControlPoints &force) const
+  {
+    if (tau_ == 0.)
+      return ControlPoints::Zero(force.rows(), 3);
+    return nodal(tau_ * implicit_shell_.solve(flat(force)));
+  }
+
+
+  ControlPoints
+  LinearisedShell::force_change(const ControlPoints &dG, const ControlPoints &dx) const
+  {
+    if (tau_ == 0.)
+      return dG;
+    return dG - nodal(pressure_stiffness_ * flat(dx));
   }
 } // namespace tanktread

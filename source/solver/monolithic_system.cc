@@ -2,12 +2,8 @@
 // Part of Tanktread: the linear system of a Newton iteration and its preconditioner.
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/base/numbers.h>
 
-#include <tanktread/base/exceptions.h>
 #include <tanktread/solver/monolithic_system.h>
-#include <tanktread/surface/surface_geometry.h>
-#include <tanktread/surface/surface_operators.h>
 
 namespace tanktread
 {
@@ -60,38 +56,16 @@ namespace tanktread
 
     stokes_.vmult(dst, src);
     coupling.spread_with_motion(-unknowns.force - unknowns.pressure_jump * shell_.volume_gradient(), dx, -shell_.density(), dst);
-    set_shell_unknowns(dst, {-shell_.volume_gradient().cwiseProduct(dw).sum(), unknowns.force + shell_.stiffness_times(dx)});
+    set_shell_unknowns(dst, {-shell_.volume_gradient().cwiseProduct(dw).sum(), shell_.damped(unknowns.force + shell_.stiffness_times(dx))});
   }
 
 
-  MonolithicPreconditioner::MonolithicPreconditioner(const StokesPreconditioner &stokes,
-                                                     const LinearisedShell      &shell,
-                                                     const SubdivisionSurface   &surface,
-                                                     const ControlPoints        &x,
-                                                     const double                h)
+  MonolithicPreconditioner::MonolithicPreconditioner(const StokesPreconditioner &stokes, const LinearisedShell &shell, const double volume)
     : stokes_(stokes)
     , shell_(shell)
-    , indicator_schur_(enclosed_volume(surface, x))
+    , volume_(volume)
     , velocity_scratch_(stokes.stokes().space().velocity.partitioner())
-  {
-    if (shell.tau() == 0.)
-      return;
-    const double k1 = 2., k2 = dealii::numbers::PI / h;
-    const double c0 = 4. * k1 * k2 / (k1 + k2), c1 = 4. / (k1 + k2);
-    Z_ = for_three_components(c0 * mass_matrix(surface, area_weights(surface, x)) + c1 * laplace_beltrami(surface, x));
-    factorisation_.compute(SparseMatrix(Z_ + shell.tau() * shell.stiffness()));
-    if (factorisation_.info() != Eigen::Success)
-      throw NumericalError("The shell's block of the preconditioner is singular.");
-  }
-
-
-  ControlPoints
-  MonolithicPreconditioner::shell_force(const ControlPoints &r_F) const
-  {
-    if (shell_.tau() == 0.)
-      return r_F;
-    return nodal(Z_ * factorisation_.solve(flat(r_F)));
-  }
+  {}
 
 
   void
@@ -99,7 +73,7 @@ namespace tanktread
   {
     const MPI_Comm      communicator = stokes_.stokes().space().mesh.communicator();
     const ShellUnknowns r            = shell_unknowns(src, communicator);
-    const ShellUnknowns z{-r.pressure_jump / indicator_schur_, shell_force(r.force)};
+    const ShellUnknowns z{-r.pressure_jump / volume_, r.force};
 
     stokes_.apply_inverse_pressure_mass(dst.block(pressure_block), src.block(pressure_block));
     dst.block(pressure_block) *= -1.;

@@ -3,6 +3,7 @@
 
 #include <tanktread/base/exceptions.h>
 #include <tanktread/solver/newton_solver.h>
+#include <tanktread/surface/surface_geometry.h>
 
 #include <cmath>
 
@@ -10,21 +11,12 @@ namespace tanktread
 {
   namespace
   {
-    double
-    velocity_norm(const FluidBlockVector &vector)
-    {
-      double sum = 0.;
-      for (unsigned int c = 0; c < 3; ++c)
-        sum += vector.block(c).norm_sqr();
-      return std::sqrt(sum);
-    }
-
-
     State
     moved(const State &state, const State &increment, const double length)
     {
       State result(state);
       result.x += length * increment.x;
+      result.force += length * increment.force;
       result.pressure_jump += length * increment.pressure_jump;
       for (unsigned int b = 0; b <= pressure_block; ++b)
         result.fluid.block(b).add(length, increment.fluid.block(b));
@@ -63,78 +55,99 @@ namespace tanktread
   {
     const Timings::Scope scope(timings_, "Residual");
     Residual             r;
-    const ShellForces    forces(shell_, surface_, state.x);
+    r.force  = state.force - shell_.force(state.x);
+    r.volume = enclosed_volume(surface_, state.x) - volume_;
     coupling_.move(state.x);
 
-    FluidBlockVector shell_load, unit_load;
     fluid_->space().reinit(r.fluid);
-    fluid_->space().reinit(shell_load);
-    fluid_->space().reinit(unit_load);
-    coupling_.spread(forces.force, shell_load);
-    coupling_.spread(forces.volume_gradient, unit_load);
-    const double scale = velocity_norm(shell_load) + velocity_norm(unit_load);
     fluid_->stokes().vmult(r.fluid, state.fluid);
-    r.fluid.add(-1., shell_load, -state.pressure_jump, unit_load);
-
-    r.x      = state.x - xhat - tau * (coupling_.interpolate(state.fluid) + flow_.velocity(state.x));
-    r.volume = forces.volume - volume_;
-    r.norm   = std::sqrt(std::pow(velocity_norm(r.fluid) / scale, 2) + r.x.squaredNorm() / r.x.rows() + std::pow(r.volume / volume_, 2));
+    coupling_.spread(-state.force - state.pressure_jump * volume_gradient(surface_, state.x), r.fluid);
+    r.shell_speed = shell_speed(r.fluid);
+    r.x = state.x - xhat - tau * (coupling_.interpolate(state.fluid) + flow_.velocity(state.x));
     return r;
   }
 
 
-  bool
-  NewtonSolver::is_solved(const Residual &r) const
+  double
+  NewtonSolver::norm(const Residual &r, const LinearisedShell &shell) const
   {
-    return r.norm <= parameters_.newton_tolerance && std::abs(r.volume) <= parameters_.volume_tolerance * volume_;
+    const double n_points = r.x.rows(), tau = shell.tau();
+    return std::sqrt(r.shell_speed * r.shell_speed + r.x.squaredNorm() / (n_points * tau * tau) + shell.displacement_of_force(r.force).squaredNorm() / (n_points * tau * tau) +
+                     std::pow(r.volume / (volume_ * tau), 2));
+  }
+
+
+  double
+  NewtonSolver::shell_speed(const FluidBlockVector &load) const
+  {
+    FluidBlockVector flow;
+    fluid_->space().reinit(flow);
+    for (unsigned int c = 0; c < 3; ++c)
+      fluid_->preconditioner().apply_inverse_laplace(flow.block(c), load.block(c));
+    const ControlPoints velocity = coupling_.interpolate(flow);
+    return std::sqrt(velocity.squaredNorm() / velocity.rows());
+  }
+
+
+  bool
+  NewtonSolver::is_solved(const Residual &r, const double norm) const
+  {
+    return norm <= parameters_.newton_tolerance && std::abs(r.volume) <= parameters_.volume_tolerance * volume_;
+  }
+
+
+  LinearisedShell
+  NewtonSolver::linearised(const State &state, const double tau)
+  {
+    const Timings::Scope scope(timings_, "Shell tangent and factorisation");
+    coupling_.move(state.x); // a rejected trial of the line search may have left it elsewhere
+    PointVelocity velocity = coupling_.velocity_and_gradient(state.fluid);
+    velocity.gradient.col(2).array() += flow_.shear_rate; // du_x/dz
+    return {shell_, surface_, coupling_, state, velocity, tau, fluid_->mesh().cell_size(fluid_->mesh().finest_level())};
   }
 
 
   LinearReport
-  NewtonSolver::linear_solve(const Residual &r, const State &state, const double tau, const double tolerance, State &increment)
+  NewtonSolver::linear_solve(const Residual &r, const LinearisedShell &shell, const double tolerance, State &increment)
   {
-    const unsigned int n_points = state.x.rows();
-    PointVelocity      velocity = coupling_.velocity_and_gradient(state.fluid);
-    velocity.gradient.col(2).array() += flow_.shear_rate;
+    const Timings::Scope           scope(timings_, "Linear solver");
+    const double                   tau      = shell.tau();
+    const unsigned int             n_points = r.x.rows();
+    const MonolithicOperator       matrix(fluid_->stokes(), shell);
+    const MonolithicPreconditioner preconditioner(fluid_->preconditioner(), shell, volume_);
 
-    const auto linearise = [&]() {
-      const Timings::Scope scope(timings_, "Shell tangent and factorisation");
-      return std::make_unique<LinearisedShell>(
-        shell_, surface_, coupling_, state.x, ShellForces(shell_, surface_, state.x), velocity, state.pressure_jump, tau);
-    };
-    const auto                     shell = linearise();
-    const MonolithicOperator       matrix(fluid_->stokes(), *shell);
-    const MonolithicPreconditioner preconditioner(fluid_->preconditioner(), *shell, surface_, state.x, fluid_->mesh().cell_size(fluid_->mesh().finest_level()));
-
-    const ControlPoints dx0 = shell->displacement_of_residual(r.x);
+    const ControlPoints dx0 = shell.displacement_of_residual(r.x);
     FluidBlockVector    rhs = monolithic_vector(fluid_->space(), n_points), solution(rhs);
     for (unsigned int b = 0; b <= pressure_block; ++b)
       rhs.block(b).equ(-1., r.fluid.block(b));
-    coupling_.spread_with_motion(ControlPoints::Zero(n_points, 3), dx0, shell->density(), rhs);
-    const double volume_rate = tau == 0. ? 0. : (r.volume + shell->volume_gradient().cwiseProduct(dx0).sum()) / tau;
-    set_shell_unknowns(rhs, {volume_rate, -shell->stiffness_times(dx0)});
+    coupling_.spread_with_motion(ControlPoints::Zero(n_points, 3), dx0, shell.density(), rhs);
+    const double volume_rate = tau == 0. ? 0. : (r.volume + shell.volume_gradient().cwiseProduct(dx0).sum()) / tau;
+    set_shell_unknowns(rhs, {volume_rate, shell.damped(-r.force - shell.stiffness_times(dx0))});
 
-    const Timings::Scope scope(timings_, "Linear solver");
-    const LinearReport   report = solve_fgmres(matrix, preconditioner, solution, rhs, tolerance, parameters_.max_linear_iterations);
+    const LinearReport report = solve_fgmres(matrix, preconditioner, solution, rhs, tolerance, parameters_.max_linear_iterations);
 
     fluid_->space().reinit(increment.fluid);
     for (unsigned int b = 0; b <= pressure_block; ++b)
       increment.fluid.block(b) = solution.block(b);
-    increment.pressure_jump = shell_unknowns(solution, fluid_->mesh().communicator()).pressure_jump;
-    increment.x             = dx0 + tau * shell->velocity_response(coupling_.velocity_moments(solution));
+    const ShellUnknowns unknowns = shell_unknowns(solution, fluid_->mesh().communicator());
+    increment.pressure_jump      = unknowns.pressure_jump;
+    increment.x                  = dx0 + tau * shell.velocity_response(coupling_.velocity_moments(solution));
+    increment.force              = shell.force_change(unknowns.force, increment.x);
     return report;
   }
 
 
   double
-  NewtonSolver::line_search(State &state, Residual &r, const State &increment, const ControlPoints &xhat, const double tau)
+  NewtonSolver::line_search(State &state, Residual &r, const LinearisedShell &shell, const State &increment, const ControlPoints &xhat)
   {
+    const double before = norm(r, shell);
     for (double length = 1.; length > 0.05; length *= 0.5)
       try
         {
-          State    trial   = moved(state, increment, length);
-          Residual r_trial = residual(trial, xhat, tau);
-          if (r_trial.norm <= (1. - 1e-4 * length) * r.norm || is_solved(r_trial))
+          State        trial   = moved(state, increment, length);
+          Residual     r_trial = residual(trial, xhat, shell.tau());
+          const double after   = norm(r_trial, shell);
+          if (after <= (1. - 1e-4 * length) * before || is_solved(r_trial, after))
             {
               state = std::move(trial);
               r     = std::move(r_trial);
@@ -157,21 +170,23 @@ namespace tanktread
     try
       {
         Residual r = residual(trial, xhat, tau);
-        report.residuals.push_back(r.norm);
-        while (!is_solved(r))
+        for (bool solved = false; !solved;)
           {
             if (report.newton_iterations == parameters_.max_newton_iterations)
               throw NumericalError("no convergence in " + std::to_string(report.newton_iterations) + " Newton iterations");
-            coupling_.move(trial.x); // a rejected trial of the line search may have left it elsewhere
-            const LinearReport linear = linear_solve(r, trial, tau, parameters_.linear_tolerance, increment);
+            const LinearisedShell shell = linearised(trial, tau);
+            if (report.residuals.empty())
+              report.residuals.push_back(norm(r, shell));
+            const LinearReport linear = linear_solve(r, shell, parameters_.linear_tolerance, increment);
             ++report.newton_iterations;
             report.linear_iterations += linear.iterations;
             if (!linear.converged)
               throw NumericalError("the linear solver did not converge in " + std::to_string(linear.iterations) + " iterations");
-            report.step_lengths.push_back(line_search(trial, r, increment, xhat, tau));
-            report.residuals.push_back(r.norm);
+            report.step_lengths.push_back(line_search(trial, r, shell, increment, xhat));
+            report.residuals.push_back(norm(r, shell));
             if (report.step_lengths.back() == 0.)
               throw NumericalError("Newton's direction does not reduce the residual");
+            solved = is_solved(r, report.residuals.back());
           }
         report.converged = true;
         state            = std::move(trial);
@@ -187,9 +202,10 @@ namespace tanktread
   ControlPoints
   NewtonSolver::solve_flow(State &state, unsigned int &linear_iterations)
   {
+    state.force = shell_.force(state.x);
     State              increment;
     const Residual     r      = residual(state, state.x, 0.);
-    const LinearReport report = linear_solve(r, state, 0., 1e-2 * parameters_.newton_tolerance, increment);
+    const LinearReport report = linear_solve(r, linearised(state, 0.), 1e-2 * parameters_.newton_tolerance, increment);
     linear_iterations         = report.iterations;
     if (!report.converged)
       throw NumericalError("The Stokes solver did not converge: residual " + std::to_string(report.final_residual) + " after " + std::to_string(report.iterations) +

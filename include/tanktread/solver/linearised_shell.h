@@ -7,6 +7,7 @@
 #include <Eigen/SparseLU>
 #include <tanktread/coupling/coupling.h>
 #include <tanktread/shell/shell.h>
+#include <tanktread/solver/state.h>
 
 namespace tanktread
 {
@@ -30,35 +31,33 @@ namespace tanktread
   SparseMatrix
   for_three_components(const SparseMatrix &matrix);
 
-  /** Nodal forces, volume and (if asked for) their derivatives at one position of the shell. */
-  struct ShellForces
-  {
-    ControlPoints force;           // f = -dE/dx
-    ControlPoints volume_gradient; // v = dV/dx
-    double        volume = 0.;     // V
-
-    ShellForces(const Shell &shell, const SubdivisionSurface &surface, const ControlPoints &x);
-  };
-
   /**
-   * The shell's rows of the Newton system about (x, u, pi) for a time step of effective length tau:
+   * The shell's rows of the Newton system about (x, F, u, pi) for a time step of effective length tau, v = dV/dx, H_V = d2V/dx2:
    *
    *     dx = tau dw - (M - tau Gamma)^{-1} M r_x,   dw = (M - tau Gamma)^{-1} S^T W Phi du,   Gamma = S^T W grad u S
-   *     dF = -(K - pi H_V) dx,                       H_V = d2V/dx2
+   *     dG + (K - pi H_V) dx = -r_F,                dG = dF + pi H_V dx: change of F + pi v at fixed pi
    *
-   * tau = 0 freezes the shell: then dw = J du and no derivative of the forces is needed.
+   * The second row is multiplied by Z (Z + tau (K - pi H_V))^{-1}, where the sparse operator
+   *
+   *     Z = c0 M_s + c1 L_s,   c0 = 4 mu k1 k2/(k1 + k2),   c1 = 4 mu/(k1 + k2),   k1 = 2/a,   k2 = pi/h,
+   *
+   * (mass and Laplace-Beltrami matrices on the current surface) stands for the inverse of the surface mobility J A^{-1} J^T: c0 + c1 k^2 equals the symbol 4 mu k of
+   * that inverse for a plane at both ends of the resolved wave numbers. Eliminating the fluid exactly would leave (1 + tau K J A^{-1} J^T) dG, so after
+   * the multiplication the row is close to dG = ... for any stiffness.
+   *
+   * tau = 0 freezes the shell: then dw = J du, dG = 0 and no derivative of the forces is needed.
    */
   class LinearisedShell
   {
   public:
+    /** @param h finest fluid cell. Throws NumericalError when one of the two matrices is singular. */
     LinearisedShell(const Shell              &shell,
                     const SubdivisionSurface &surface,
                     const Coupling           &coupling,
-                    const ControlPoints      &x,
-                    const ShellForces        &forces,
+                    const State              &state,
                     const PointVelocity      &velocity,
-                    double                    pressure_jump,
-                    double                    tau);
+                    double                    tau,
+                    double                    h);
 
     /** (M - tau Gamma)^{-1} moments. */
     ControlPoints
@@ -72,6 +71,18 @@ namespace tanktread
     ControlPoints
     stiffness_times(const ControlPoints &dx) const;
 
+    /** Z (Z + tau (K - pi H_V))^{-1} force; the force itself if tau = 0. */
+    ControlPoints
+    damped(const ControlPoints &force) const;
+
+    /** tau (Z + tau (K - pi H_V))^{-1} force: about how far the shell moves to balance a force that is missing. */
+    ControlPoints
+    displacement_of_force(const ControlPoints &force) const;
+
+    /** dF = dG - pi H_V dx. */
+    ControlPoints
+    force_change(const ControlPoints &dG, const ControlPoints &dx) const;
+
     double
     tau() const
     {
@@ -82,19 +93,13 @@ namespace tanktread
     {
       return coupling_;
     }
-    /** K - pi H_V, empty if tau = 0. */
-    const SparseMatrix &
-    stiffness() const
-    {
-      return stiffness_;
-    }
     /** v = dV/dx. */
     const ControlPoints &
     volume_gradient() const
     {
       return volume_gradient_;
     }
-    /** g = M^{-1}(f + pi v), control points of the density that is being spread. */
+    /** g = M^{-1}(F + pi v), control points of the density that is being spread. */
     const ControlPoints &
     density() const
     {
@@ -105,8 +110,11 @@ namespace tanktread
     const Coupling &coupling_;
     double          tau_;
     ControlPoints   volume_gradient_, density_;
-    SparseMatrix    stiffness_;
-    Factorisation   response_;
+    SparseMatrix    pressure_stiffness_; // pi H_V
+    SparseMatrix    stiffness_;          // K - pi H_V
+    SparseMatrix    Z_;
+    Factorisation   response_;       // of M - tau Gamma
+    Factorisation   implicit_shell_; // of Z + tau (K - pi H_V)
   };
 } // namespace tanktread
 

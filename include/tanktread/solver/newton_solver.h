@@ -26,22 +26,25 @@ namespace tanktread
     std::string         message;   // why it failed
   };
 
-  /** A residual (r_u, r_p; r_x; r_V) with the shell's forces that went into it. */
+  /** A residual (r_u, r_p; r_x; r_F; r_V). */
   struct Residual
   {
-    FluidBlockVector fluid;  // A u - B^T p - R(f + pi v), -B u
-    ControlPoints    x;      // x - xhat - tau (J u + undisturbed flow)
-    double           volume; // V - V0
-    double           norm;   // see NewtonSolver
+    FluidBlockVector fluid;        // A u - B^T p - R(F + pi v), -B u
+    double           shell_speed;  // root mean square of J A^{-1} r_u: about how fast the missing forces would move the shell
+    ControlPoints    x;            // x - xhat - tau (J u + undisturbed flow)
+    ControlPoints    force;        // F - f(x)
+    double           volume;       // V - V0
   };
 
   /**
    * Solves for all unknowns of a time level together, by Newton's method with the complete derivative:
    *
-   *     A u - B^T p = R(x)(f(x) + pi v(x)),   B u = 0,   V(x) = V0,   x = xhat + tau (J(x) u + u_inf(x)).
+   *     A u - B^T p = R(x)(F + pi v(x)),   B u = 0,   F = f(x),   V(x) = V0,   x = xhat + tau (J(x) u + u_inf(x)).
    *
-   * xhat and tau carry the time scheme: x_n and dt for backward Euler. The norm of a residual is the root of the squares of |r_u| / (|R f| + |R v|), the l2 norm of
-   * load vectors relative to the shell's forces and unit pressure, of the root mean square of r_x over a, and of r_V / V0.
+   * xhat and tau carry the time scheme: x_n and dt for backward Euler. All parts of a residual are measured as velocities of the shell, in a per unit of
+   * time: |J A^{-1} r_u| with a multigrid V-cycle for A^{-1}, |r_x| / tau, |(Z + tau K)^{-1} r_F| and r_V / (V0 tau), the first three as root mean squares over the
+   * control points. (The Euclidean norm of the load vector r_u would not do: moving the shell within a cell redistributes loads among the
+   * nodes, which changes the vector much and the flow little.)
    */
   class NewtonSolver
   {
@@ -66,13 +69,22 @@ namespace tanktread
   private:
     Residual
     residual(const State &state, const ControlPoints &xhat, double tau);
-    LinearReport
-    linear_solve(const Residual &r, const State &state, double tau, double tolerance, State &increment);
-    /** Moves `state` along `increment` with the longest step length of 1, 1/2, ... that reduces the residual; returns 0 if there is none. */
     double
-    line_search(State &state, Residual &r, const State &increment, const ControlPoints &xhat, double tau);
+    norm(const Residual &r, const LinearisedShell &shell) const;
+    double
+    shell_speed(const FluidBlockVector &load) const;
     bool
-    is_solved(const Residual &r) const;
+    is_solved(const Residual &r, double norm) const;
+    LinearisedShell
+    linearised(const State &state, double tau);
+    LinearReport
+    linear_solve(const Residual &r, const LinearisedShell &shell, double tolerance, State &increment);
+    /**
+     * Moves `state` along `increment` with the longest step length of 1, 1/2, ... that reduces the norm of the residual; returns 0 if there is none. All norms are
+     * those of the linearisation that made the increment.
+     */
+    double
+    line_search(State &state, Residual &r, const LinearisedShell &shell, const State &increment, const ControlPoints &xhat);
 
     const SolverParameters   &parameters_;
     const Shell              &shell_;

@@ -24,11 +24,15 @@ namespace tanktread
     }
   };
 
-  /** Unknowns (u, p, pi, x) of one time level. */
+  /**
+   * Unknowns (u, p, pi, x, F) of one time level. The nodal forces F equal f(x) in a solution; keeping them as unknowns lets Newton's method step over the stiffness
+   * of the shell: f varies much more on the way to the solution than anything that the fluid feels.
+   */
   struct State
   {
-    ControlPoints    x;             // control points, NP x 3, in a
-    FluidBlockVector fluid;         // disturbance velocity (blocks 0-2) and pressure (block 3), condensed: constrained entries are zero
+    ControlPoints    x;     // control points, NP x 3, in a
+    ControlPoints    force; // F, NP x 3
+    FluidBlockVector fluid; // disturbance velocity (blocks 0-2) and pressure (block 3), condensed: constrained entries are zero
     double           pressure_jump = 0.; // pi: pressure of the capsule's interior above that of the continuous field
   };
 } // namespace tanktread
