@@ -60,32 +60,75 @@ namespace tanktread
     , tau_(tau)
     , volume_gradient_(tanktread::volume_gradient(surface, state.x))
     , density_(coupling.density(state.force + state.pressure_jump * volume_gradient_))
+    , normal_field_(coupling.density(volume_gradient_))
   {
     if (tau == 0.)
       return;
+    const SparseMatrix volume_hessian = tanktread::volume_hessian(surface, state.x);
+    const SparseMatrix gamma          = coupling.gradient_matrix(velocity);
+    flux_gradient_ = nodal(gamma.transpose() * flat(normal_field_) + volume_hessian * flat(coupling.interpolate(state.fluid)));
+
     ControlPoints force;
     shell.force_and_tangent(state.x, force, stiffness_);
-    pressure_stiffness_ = state.pressure_jump * volume_hessian(surface, state.x);
+    pressure_stiffness_ = state.pressure_jump * volume_hessian;
     stiffness_ -= pressure_stiffness_;
     Z_ = inverse_mobility(surface, state.x, h);
-    factorise(response_, for_three_components(coupling.mass()) - tau * coupling.gradient_matrix(velocity), "The motion of the shell in the velocity gradient, for this time step,");
     factorise(implicit_shell_, Z_ + tau * stiffness_, "The shell's implicit operator, for this time step,");
+
+    motion_ = for_three_components(coupling.mass()) - tau * gamma - state.volume_shift * volume_hessian;
+    factorise(motion_factors_, motion_, "The motion of the shell in the velocity gradient, for this time step,");
+    volume_response_ = nodal(motion_factors_.solve(flat(volume_gradient_)));
+  }
+
+
+  void
+  LinearisedShell::correct_volume(ControlPoints &dx, const double r_V) const
+  {
+    const double excess = volume_gradient_.cwiseProduct(dx).sum() + r_V;
+    dx -= excess / volume_gradient_.cwiseProduct(volume_response_).sum() * volume_response_;
   }
 
 
   ControlPoints
-  LinearisedShell::velocity_response(const ControlPoints &moments) const
+  LinearisedShell::displacement(const ControlPoints &velocity_moments) const
   {
     if (tau_ == 0.)
-      return coupling_.density(moments);
-    return nodal(response_.solve(flat(moments)));
+      return ControlPoints::Zero(velocity_moments.rows(), 3);
+    ControlPoints dx = nodal(motion_factors_.solve(tau_ * flat(velocity_moments)));
+    correct_volume(dx, 0.);
+    return dx;
   }
 
 
   ControlPoints
-  LinearisedShell::displacement_of_residual(const ControlPoints &r_x) const
+  LinearisedShell::displacement_of_residual(const ControlPoints &r_x, const double r_V) const
   {
-    return -velocity_response(coupling_.mass() * r_x);
+    if (tau_ == 0.)
+      return ControlPoints::Zero(r_x.rows(), 3);
+    const ControlPoints moments = -(coupling_.mass() * r_x);
+    ControlPoints       dx      = nodal(motion_factors_.solve(flat(moments)));
+    correct_volume(dx, r_V);
+    return dx;
+  }
+
+
+  double
+  LinearisedShell::flux(const ControlPoints &velocity_moments, const ControlPoints &dx) const
+  {
+    double result = normal_field_.cwiseProduct(velocity_moments).sum();
+    if (tau_ != 0.)
+      result += flux_gradient_.cwiseProduct(dx).sum();
+    return result;
+  }
+
+
+  double
+  LinearisedShell::volume_shift(const ControlPoints &velocity_moments, const ControlPoints &r_x, const ControlPoints &dx) const
+  {
+    if (tau_ == 0.)
+      return 0.;
+    const ControlPoints row = nodal(motion_ * flat(dx)) - tau_ * velocity_moments + coupling_.mass() * r_x;
+    return normal_field_.cwiseProduct(row).sum() / normal_field_.cwiseProduct(volume_gradient_).sum();
   }
 
 

@@ -51,12 +51,12 @@ namespace tanktread
     const auto         &coupling = shell_.coupling();
     const MPI_Comm      communicator = stokes_.space().mesh.communicator();
     const ShellUnknowns unknowns     = shell_unknowns(src, communicator);
-    const ControlPoints dw           = shell_.velocity_response(coupling.velocity_moments(src));
-    const ControlPoints dx           = shell_.tau() * dw;
+    const ControlPoints moments      = coupling.velocity_moments(src);
+    const ControlPoints dx           = shell_.displacement(moments);
 
     stokes_.vmult(dst, src);
     coupling.spread_with_motion(-unknowns.force - unknowns.pressure_jump * shell_.volume_gradient(), dx, -shell_.density(), dst);
-    set_shell_unknowns(dst, {-shell_.volume_gradient().cwiseProduct(dw).sum(), shell_.damped(unknowns.force + shell_.stiffness_times(dx))});
+    set_shell_unknowns(dst, {-shell_.flux(moments, dx), shell_.damped(unknowns.force + shell_.stiffness_times(dx))});
   }
 
 

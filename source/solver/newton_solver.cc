@@ -18,6 +18,7 @@ namespace tanktread
       result.x += length * increment.x;
       result.force += length * increment.force;
       result.pressure_jump += length * increment.pressure_jump;
+      result.volume_shift += length * increment.volume_shift;
       for (unsigned int b = 0; b <= pressure_block; ++b)
         result.fluid.block(b).add(length, increment.fluid.block(b));
       return result;
@@ -61,9 +62,11 @@ namespace tanktread
 
     fluid_->space().reinit(r.fluid);
     fluid_->stokes().vmult(r.fluid, state.fluid);
-    coupling_.spread(-state.force - state.pressure_jump * volume_gradient(surface_, state.x), r.fluid);
+    const ControlPoints v = volume_gradient(surface_, state.x), velocity = coupling_.interpolate(state.fluid);
+    coupling_.spread(-state.force - state.pressure_jump * v, r.fluid);
     r.shell_speed = shell_speed(r.fluid);
-    r.x = state.x - xhat - tau * (coupling_.interpolate(state.fluid) + flow_.velocity(state.x));
+    r.flux        = v.cwiseProduct(velocity).sum();
+    r.x           = state.x - xhat - tau * (velocity + flow_.velocity(state.x)) - state.volume_shift * coupling_.density(v);
     return r;
   }
 
@@ -73,7 +76,7 @@ namespace tanktread
   {
     const double n_points = r.x.rows(), tau = shell.tau();
     return std::sqrt(r.shell_speed * r.shell_speed + r.x.squaredNorm() / (n_points * tau * tau) + shell.displacement_of_force(r.force).squaredNorm() / (n_points * tau * tau) +
-                     std::pow(r.volume / (volume_ * tau), 2));
+                     (std::pow(r.flux, 2) + std::pow(r.volume / tau, 2)) / std::pow(3. * volume_, 2));
   }
 
 
@@ -111,18 +114,16 @@ namespace tanktread
   NewtonSolver::linear_solve(const Residual &r, const LinearisedShell &shell, const double tolerance, State &increment)
   {
     const Timings::Scope           scope(timings_, "Linear solver");
-    const double                   tau      = shell.tau();
     const unsigned int             n_points = r.x.rows();
     const MonolithicOperator       matrix(fluid_->stokes(), shell);
     const MonolithicPreconditioner preconditioner(fluid_->preconditioner(), shell, volume_);
 
-    const ControlPoints dx0 = shell.displacement_of_residual(r.x);
+    const ControlPoints dx0 = shell.displacement_of_residual(r.x, r.volume);
     FluidBlockVector    rhs = monolithic_vector(fluid_->space(), n_points), solution(rhs);
     for (unsigned int b = 0; b <= pressure_block; ++b)
       rhs.block(b).equ(-1., r.fluid.block(b));
     coupling_.spread_with_motion(ControlPoints::Zero(n_points, 3), dx0, shell.density(), rhs);
-    const double volume_rate = tau == 0. ? 0. : (r.volume + shell.volume_gradient().cwiseProduct(dx0).sum()) / tau;
-    set_shell_unknowns(rhs, {volume_rate, shell.damped(-r.force - shell.stiffness_times(dx0))});
+    set_shell_unknowns(rhs, {r.flux + shell.flux(ControlPoints::Zero(n_points, 3), dx0), shell.damped(-r.force - shell.stiffness_times(dx0))});
 
     const LinearReport report = solve_fgmres(matrix, preconditioner, solution, rhs, tolerance, parameters_.max_linear_iterations);
 
@@ -131,7 +132,9 @@ namespace tanktread
       increment.fluid.block(b) = solution.block(b);
     const ShellUnknowns unknowns = shell_unknowns(solution, fluid_->mesh().communicator());
     increment.pressure_jump      = unknowns.pressure_jump;
-    increment.x                  = dx0 + tau * shell.velocity_response(coupling_.velocity_moments(solution));
+    const ControlPoints moments  = coupling_.velocity_moments(solution);
+    increment.x                  = dx0 + shell.displacement(moments);
+    increment.volume_shift       = shell.volume_shift(moments, r.x, increment.x);
     increment.force              = shell.force_change(unknowns.force, increment.x);
     return report;
   }

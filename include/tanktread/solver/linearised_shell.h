@@ -32,10 +32,12 @@ namespace tanktread
   for_three_components(const SparseMatrix &matrix);
 
   /**
-   * The shell's rows of the Newton system about (x, F, u, pi) for a time step of effective length tau, v = dV/dx, H_V = d2V/dx2:
+   * The shell's rows of the Newton system about (x, F, u, pi) for a time step of effective length tau, v = dV/dx, H_V = d2V/dx2 (eqs. of doc/theory.md, section 6):
    *
-   *     dx = tau dw - (M - tau Gamma)^{-1} M r_x,   dw = (M - tau Gamma)^{-1} S^T W Phi du,   Gamma = S^T W grad u S
-   *     dG + (K - pi H_V) dx = -r_F,                dG = dF + pi H_V dx: change of F + pi v at fixed pi
+   *     (M - tau Gamma - sigma H_V) dx = tau S^T W Phi du + dsigma v - M r_x,   v . dx = -r_V,   Gamma = S^T W grad u S
+   *     dG + (K - pi H_V) dx = -r_F,                                            dG = dF + pi H_V dx: change of F + pi v at fixed pi
+   *
+   * The first line, dsigma eliminated, defines the linear map dx = tau dw(du) + dx0(r_x, r_V), so every iterate keeps the linearised volume.
    *
    * The second row is multiplied by Z (Z + tau (K - pi H_V))^{-1}, where the sparse operator
    *
@@ -45,7 +47,7 @@ namespace tanktread
    * that inverse for a plane at both ends of the resolved wave numbers. Eliminating the fluid exactly would leave (1 + tau K J A^{-1} J^T) dG, so after
    * the multiplication the row is close to dG = ... for any stiffness.
    *
-   * tau = 0 freezes the shell: then dw = J du, dG = 0 and no derivative of the forces is needed.
+   * tau = 0 freezes the shell: then dG = 0 and no derivative of the forces is needed.
    */
   class LinearisedShell
   {
@@ -59,13 +61,21 @@ namespace tanktread
                     double                    tau,
                     double                    h);
 
-    /** (M - tau Gamma)^{-1} moments. */
+    /** dx for r_x = 0, r_V = 0 and given velocity moments S^T W Phi du; zero if tau = 0. */
     ControlPoints
-    velocity_response(const ControlPoints &moments) const;
+    displacement(const ControlPoints &velocity_moments) const;
 
-    /** dx for du = 0: -(M - tau Gamma)^{-1} M r_x. */
+    /** dx for du = 0; zero if tau = 0. */
     ControlPoints
-    displacement_of_residual(const ControlPoints &r_x) const;
+    displacement_of_residual(const ControlPoints &r_x, double r_V) const;
+
+    /** Change of the volume flux v . J u through the shell: m . (moments + Gamma dx) + (H_V J u) . dx with m = M^{-1} v. */
+    double
+    flux(const ControlPoints &velocity_moments, const ControlPoints &dx) const;
+
+    /** dsigma that belongs to dx: the part of the first row along m. */
+    double
+    volume_shift(const ControlPoints &velocity_moments, const ControlPoints &r_x, const ControlPoints &dx) const;
 
     /** (K - pi H_V) dx, zero if tau = 0. */
     ControlPoints
@@ -107,14 +117,22 @@ namespace tanktread
     }
 
   private:
+    /** Adds the multiple of A^{-1} v to `dx` that makes v . dx = -r_V. */
+    void
+    correct_volume(ControlPoints &dx, double r_V) const;
+
     const Coupling &coupling_;
     double          tau_;
     ControlPoints   volume_gradient_, density_;
+    ControlPoints   normal_field_;       // m = M^{-1} v
+    ControlPoints   flux_gradient_;      // derivative of v . J u by x: Gamma^T m + H_V J u
+    ControlPoints   volume_response_;    // A^{-1} v
     SparseMatrix    pressure_stiffness_; // pi H_V
     SparseMatrix    stiffness_;          // K - pi H_V
     SparseMatrix    Z_;
-    Factorisation   response_;       // of M - tau Gamma
-    Factorisation   implicit_shell_; // of Z + tau (K - pi H_V)
+    SparseMatrix    motion_;             // A = M - tau Gamma - sigma H_V
+    Factorisation   motion_factors_;
+    Factorisation   implicit_shell_;     // of Z + tau (K - pi H_V)
   };
 } // namespace tanktread
 

@@ -38,8 +38,8 @@ namespace tanktread
    *
    *                      A du - B^T dp - R(dG + v dpi) - D_R dx = ...     D_R dx: motion of the spreading points
    *                                                      - B du = ...
-   *                                                    - v . dw = ...
-   *     Z (Z + tau (K - pi H_V))^{-1} (dG + (K - pi H_V) tau dw) = ...     dx = tau dw + known part
+   *                                                 - d(v . J u) = ...     volume flux through the shell
+   *         Z (Z + tau (K - pi H_V))^{-1} (dG + (K - pi H_V) dx) = ...     dx = displacement(du) + known part
    */
   class MonolithicOperator
   {

@@ -26,23 +26,27 @@ namespace tanktread
     std::string         message;   // why it failed
   };
 
-  /** A residual (r_u, r_p; r_x; r_F; r_V). */
+  /** A residual (r_u, r_p; r_x; r_F; r_pi; r_V). */
   struct Residual
   {
     FluidBlockVector fluid;        // A u - B^T p - R(F + pi v), -B u
     double           shell_speed;  // root mean square of J A^{-1} r_u: about how fast the missing forces would move the shell
-    ControlPoints    x;            // x - xhat - tau (J u + undisturbed flow)
+    ControlPoints    x;            // x - xhat - tau (J u + undisturbed flow) - sigma m
     ControlPoints    force;        // F - f(x)
+    double           flux;         // v . J u
     double           volume;       // V - V0
   };
 
   /**
    * Solves for all unknowns of a time level together, by Newton's method with the complete derivative:
    *
-   *     A u - B^T p = R(x)(F + pi v(x)),   B u = 0,   F = f(x),   V(x) = V0,   x = xhat + tau (J(x) u + u_inf(x)).
+   *     A u - B^T p = R(x)(F + pi v(x)),   B u = 0,   v . J(x) u = 0,   F = f(x),
+   *     x = xhat + tau (J(x) u + u_inf(x)) + sigma m(x),   V(x) = V0,   v = dV/dx,   m = M^{-1} v.
    *
-   * xhat and tau carry the time scheme: x_n and dt for backward Euler. All parts of a residual are measured as velocities of the shell, in a per unit of
-   * time: |J A^{-1} r_u| with a multigrid V-cycle for A^{-1}, |r_x| / tau, |(Z + tau K)^{-1} r_F| and r_V / (V0 tau), the first three as root mean squares over the
+   * xhat and tau carry the time scheme: x_n and dt for backward Euler. The pressure jump pi lets no volume through the shell at the new time level; what a finite step
+   * along such a velocity still changes of the volume is an error of the time scheme, which the uniform normal displacement sigma m takes away. (To ask
+   * the fluid for that volume instead would drive flow through the shell against incompressibility, with a pressure jump that grows like dt/h.) All parts of a residual are measured as velocities of the shell, in a per unit of
+   * time: |J A^{-1} r_u| with a multigrid V-cycle for A^{-1}, |r_x| / tau, |(Z + tau K)^{-1} r_F|, r_pi / (3 V0) and r_V / (3 V0 tau), the first three as root mean squares over the
    * control points. (The Euclidean norm of the load vector r_u would not do: moving the shell within a cell redistributes loads among the
    * nodes, which changes the vector much and the flow little.)
    */

@@ -25,7 +25,7 @@ namespace tanktread
   };
 
   /**
-   * Unknowns (u, p, pi, x, F) of one time level. The nodal forces F equal f(x) in a solution; keeping them as unknowns lets Newton's method step over the stiffness
+   * Unknowns (u, p, pi, x, F, sigma) of one time level. The nodal forces F equal f(x) in a solution; keeping them as unknowns lets Newton's method step over the stiffness
    * of the shell: f varies much more on the way to the solution than anything that the fluid feels.
    */
   struct State
@@ -33,6 +33,7 @@ namespace tanktread
     ControlPoints    x;     // control points, NP x 3, in a
     ControlPoints    force; // F, NP x 3
     FluidBlockVector fluid; // disturbance velocity (blocks 0-2) and pressure (block 3), condensed: constrained entries are zero
+    double           volume_shift = 0.;  // sigma: normal displacement, in a^3 per reference area, that undoes the volume error of the time scheme
     double           pressure_jump = 0.; // pi: pressure of the capsule's interior above that of the continuous field
   };
 } // namespace tanktread
