@@ -81,15 +81,12 @@ namespace tanktread
   }
 
 
-  PointVelocity
-  Coupling::velocity_and_gradient(const FluidBlockVector &u) const
+  VelocityGradients
+  Coupling::velocity_gradients(const FluidBlockVector &u) const
   {
     std::vector<double> values, gradients;
     interpolation_->values_and_gradients(u, values, gradients);
-    PointVelocity result;
-    result.value    = Eigen::Map<const ControlPoints>(values.data(), surface_.n_points(), 3);
-    result.gradient = Eigen::Map<const decltype(result.gradient)>(gradients.data(), surface_.n_points(), 9);
-    return result;
+    return Eigen::Map<const VelocityGradients>(gradients.data(), surface_.n_points(), 9);
   }
 
 
@@ -124,7 +121,7 @@ namespace tanktread
 
 
   SparseMatrix
-  Coupling::gradient_matrix(const PointVelocity &velocity) const
+  Coupling::gradient_matrix(const VelocityGradients &gradients) const
   {
     const AssemblyPattern &pattern = surface_.pattern();
     const unsigned int     n = surface_.support_size(), n_q = surface_.n_points_per_face();
@@ -144,7 +141,7 @@ namespace tanktread
                   double *const entry = values + 9 * pattern.row_start(support[i]) + 3 * places[i * n + j];
                   for (unsigned int c = 0; c < 3; ++c)
                     for (unsigned int d = 0; d < 3; ++d)
-                      entry[3 * c * length + d] += weight * velocity.gradient(q, 3 * c + d);
+                      entry[3 * c * length + d] += weight * gradients(q, 3 * c + d);
                 }
           }
       }

@@ -53,19 +53,20 @@ namespace tanktread
                                    const SubdivisionSurface &surface,
                                    const Coupling           &coupling,
                                    const State              &state,
-                                   const PointVelocity      &velocity,
+                                   const VelocityGradients  &velocity_gradient,
+                                   const PointDerivatives    derivatives,
                                    const double              tau,
                                    const double              h)
     : coupling_(coupling)
     , tau_(tau)
     , volume_gradient_(tanktread::volume_gradient(surface, state.x))
-    , density_(coupling.density(state.force + state.pressure_jump * volume_gradient_))
+    , density_(coupling.density((derivatives == PointDerivatives::complete ? 1. : 0.) * (state.force + state.pressure_jump * volume_gradient_)))
     , normal_field_(coupling.density(volume_gradient_))
   {
     if (tau == 0.)
       return;
     const SparseMatrix volume_hessian = tanktread::volume_hessian(surface, state.x);
-    const SparseMatrix gamma          = coupling.gradient_matrix(velocity);
+    const SparseMatrix gamma          = coupling.gradient_matrix(velocity_gradient);
     flux_gradient_ = nodal(gamma.transpose() * flat(normal_field_) + volume_hessian * flat(coupling.interpolate(state.fluid)));
 
     ControlPoints force;

@@ -6,6 +6,7 @@
 #include <tanktread/surface/surface_geometry.h>
 
 #include <cmath>
+#include <limits>
 
 namespace tanktread
 {
@@ -99,14 +100,23 @@ namespace tanktread
   }
 
 
+  double
+  NewtonSolver::finest_cell() const
+  {
+    return fluid_->mesh().cell_size(fluid_->mesh().finest_level());
+  }
+
+
   LinearisedShell
-  NewtonSolver::linearised(const State &state, const double tau)
+  NewtonSolver::linearised(const State &state, const PointDerivatives derivatives, const double tau)
   {
     const Timings::Scope scope(timings_, "Shell tangent and factorisation");
     coupling_.move(state.x); // a rejected trial of the line search may have left it elsewhere
-    PointVelocity velocity = coupling_.velocity_and_gradient(state.fluid);
-    velocity.gradient.col(2).array() += flow_.shear_rate; // du_x/dz
-    return {shell_, surface_, coupling_, state, velocity, tau, fluid_->mesh().cell_size(fluid_->mesh().finest_level())};
+    VelocityGradients gradients = VelocityGradients::Zero(coupling_.surface().n_points(), 9);
+    if (derivatives == PointDerivatives::complete)
+      gradients = coupling_.velocity_gradients(state.fluid);
+    gradients.col(2).array() += flow_.shear_rate; // du_x/dz
+    return {shell_, surface_, coupling_, state, gradients, derivatives, tau, finest_cell()};
   }
 
 
@@ -172,12 +182,14 @@ namespace tanktread
     State        trial = state, increment;
     try
       {
-        Residual r = residual(trial, xhat, tau);
+        Residual r      = residual(trial, xhat, tau);
+        double   length = std::numeric_limits<double>::infinity(); // of the next displacement
         for (bool solved = false; !solved;)
           {
             if (report.newton_iterations == parameters_.max_newton_iterations)
               throw NumericalError("no convergence in " + std::to_string(report.newton_iterations) + " Newton iterations");
-            const LinearisedShell shell = linearised(trial, tau);
+            const bool            near  = length < 0.25 * finest_cell();
+            const LinearisedShell shell = linearised(trial, near ? PointDerivatives::complete : PointDerivatives::frozen, tau);
             if (report.residuals.empty())
               report.residuals.push_back(norm(r, shell));
             const LinearReport linear = linear_solve(r, shell, parameters_.linear_tolerance, increment);
@@ -190,6 +202,7 @@ namespace tanktread
             if (report.step_lengths.back() == 0.)
               throw NumericalError("Newton's direction does not reduce the residual");
             solved = is_solved(r, report.residuals.back());
+            length = tau * report.residuals.back();
           }
         report.converged = true;
         state            = std::move(trial);
@@ -208,7 +221,7 @@ namespace tanktread
     state.force = shell_.force(state.x);
     State              increment;
     const Residual     r      = residual(state, state.x, 0.);
-    const LinearReport report = linear_solve(r, linearised(state, 0.), 1e-2 * parameters_.newton_tolerance, increment);
+    const LinearReport report = linear_solve(r, linearised(state, PointDerivatives::frozen, 0.), 1e-2 * parameters_.newton_tolerance, increment);
     linear_iterations         = report.iterations;
     if (!report.converged)
       throw NumericalError("The Stokes solver did not converge: residual " + std::to_string(report.final_residual) + " after " + std::to_string(report.iterations) +

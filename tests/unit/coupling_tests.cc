@@ -107,7 +107,7 @@ TEST(Coupling, MotionOfPointsIsTheDerivative)
   const double scale = std::abs(expected) + 1.;
   EXPECT_NEAR(load * s.u, expected, 1e-5 * scale);
 
-  const SparseMatrix  gamma = s.coupling.gradient_matrix(s.coupling.velocity_and_gradient(s.u));
+  const SparseMatrix  gamma = s.coupling.gradient_matrix(s.coupling.velocity_gradients(s.u));
   const ControlPoints g     = s.coupling.density(s.f);
   const Eigen::VectorXd gamma_dx = gamma * Eigen::Map<const Eigen::VectorXd>(dx.data(), dx.size());
   EXPECT_NEAR(Eigen::Map<const Eigen::VectorXd>(g.data(), g.size()).dot(gamma_dx), expected, 1e-5 * scale);

@@ -12,12 +12,8 @@
 
 namespace tanktread
 {
-  /** Values at the coupling's quadrature points: velocity (n_points x 3) and its gradient (n_points x 9, entry 3 c + d is du_c/dx_d). */
-  struct PointVelocity
-  {
-    ControlPoints                                                   value;
-    Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor> gradient;
-  };
+  /** Velocity gradients at the coupling's points, n_points x 9: entry 3 c + d is du_c/dx_d. */
+  using VelocityGradients = Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor>;
 
   /**
    * With X_q = S x the quadrature points, Phi the fluid's shape functions there, W the weights in reference area and M = S^T W S:
@@ -56,8 +52,9 @@ namespace tanktread
     ControlPoints
     interpolate(const FluidBlockVector &u) const;
 
-    PointVelocity
-    velocity_and_gradient(const FluidBlockVector &u) const;
+    /** grad u at the points, from inside the cells that they lie in. */
+    VelocityGradients
+    velocity_gradients(const FluidBlockVector &u) const;
 
     /** M^{-1} f: control points of the force density per reference area. */
     ControlPoints
@@ -77,7 +74,7 @@ namespace tanktread
 
     /** S^T W grad u S, 3 NP x 3 NP: M^{-1} times it is the change of J u when the shell moves. */
     SparseMatrix
-    gradient_matrix(const PointVelocity &velocity) const;
+    gradient_matrix(const VelocityGradients &gradients) const;
 
     /** M, NP x NP. */
     const SparseMatrix &

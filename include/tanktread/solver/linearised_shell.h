@@ -31,6 +31,13 @@ namespace tanktread
   SparseMatrix
   for_three_components(const SparseMatrix &matrix);
 
+  /** Whether the Newton system knows how interpolation and spreading change with the position of the points; see LinearisedShell. */
+  enum class PointDerivatives
+  {
+    complete,
+    frozen
+  };
+
   /**
    * The shell's rows of the Newton system about (x, F, u, pi) for a time step of effective length tau, v = dV/dx, H_V = d2V/dx2 (eqs. of doc/theory.md, section 6):
    *
@@ -47,17 +54,22 @@ namespace tanktread
    * that inverse for a plane at both ends of the resolved wave numbers. Eliminating the fluid exactly would leave (1 + tau K J A^{-1} J^T) dG, so after
    * the multiplication the row is close to dG = ... for any stiffness.
    *
+   * With PointDerivatives::frozen the derivatives of J(x) and R(x) by x are left out, but for the undisturbed flow's: Gamma is that of grad u_inf and D_R = 0. They are the
+   * derivatives of piecewise polynomials at the quadrature points, true only while a point stays in its cell; for longer ways the incomplete system is the better model of what
+   * happens, and it is never indefinite because of them.
+   *
    * tau = 0 freezes the shell: then dG = 0 and no derivative of the forces is needed.
    */
   class LinearisedShell
   {
   public:
-    /** @param h finest fluid cell. Throws NumericalError when one of the two matrices is singular. */
+    /** @param velocity_gradient at the coupling's points, of the flow whose Gamma is meant. @param h finest fluid cell. Throws NumericalError when one of the two matrices is singular. */
     LinearisedShell(const Shell              &shell,
                     const SubdivisionSurface &surface,
                     const Coupling           &coupling,
                     const State              &state,
-                    const PointVelocity      &velocity,
+                    const VelocityGradients  &velocity_gradient,
+                    PointDerivatives          derivatives,
                     double                    tau,
                     double                    h);
 
@@ -109,7 +121,7 @@ namespace tanktread
     {
       return volume_gradient_;
     }
-    /** g = M^{-1}(F + pi v), control points of the density that is being spread. */
+    /** g = M^{-1}(F + pi v), control points of the density whose motion D_R describes; zero with frozen points. */
     const ControlPoints &
     density() const
     {

@@ -61,6 +61,8 @@ namespace tanktread
     attach(const Fluid &fluid);
 
     /**
+     * Iterations whose displacement |r| tau is longer than a quarter of a cell freeze the points, the others use the complete derivative and converge quadratically.
+     *
      * Advances `state`, which holds the initial guess, to the solution. If the report says that it did not converge, `state` is as it was. Collective.
      */
     NewtonReport
@@ -80,7 +82,9 @@ namespace tanktread
     bool
     is_solved(const Residual &r, double norm) const;
     LinearisedShell
-    linearised(const State &state, double tau);
+    linearised(const State &state, PointDerivatives derivatives, double tau);
+    double
+    finest_cell() const;
     LinearReport
     linear_solve(const Residual &r, const LinearisedShell &shell, double tolerance, State &increment);
     /**
