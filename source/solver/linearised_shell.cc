@@ -53,6 +53,7 @@ namespace tanktread
                                    const SubdivisionSurface &surface,
                                    const Coupling           &coupling,
                                    const State              &state,
+                                   const ControlPoints      &velocity,
                                    const VelocityGradients  &velocity_gradient,
                                    const PointDerivatives    derivatives,
                                    const double              tau,
@@ -67,7 +68,7 @@ namespace tanktread
       return;
     const SparseMatrix volume_hessian = tanktread::volume_hessian(surface, state.x);
     const SparseMatrix gamma          = coupling.gradient_matrix(velocity_gradient);
-    flux_gradient_ = nodal(gamma.transpose() * flat(normal_field_) + volume_hessian * flat(coupling.interpolate(state.fluid)));
+    flux_gradient_ = nodal(gamma.transpose() * flat(normal_field_) + volume_hessian * flat(velocity));
 
     ControlPoints force;
     shell.force_and_tangent(state.x, force, stiffness_);

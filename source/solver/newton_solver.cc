@@ -6,7 +6,6 @@
 #include <tanktread/surface/surface_geometry.h>
 
 #include <cmath>
-#include <limits>
 
 namespace tanktread
 {
@@ -63,21 +62,35 @@ namespace tanktread
 
     fluid_->space().reinit(r.fluid);
     fluid_->stokes().vmult(r.fluid, state.fluid);
-    const ControlPoints v = volume_gradient(surface_, state.x), velocity = coupling_.interpolate(state.fluid);
+    const ControlPoints v = volume_gradient(surface_, state.x), velocity = shell_velocity(state);
     coupling_.spread(-state.force - state.pressure_jump * v, r.fluid);
     r.shell_speed = shell_speed(r.fluid);
     r.flux        = v.cwiseProduct(velocity).sum();
-    r.x           = state.x - xhat - tau * (velocity + flow_.velocity(state.x)) - state.volume_shift * coupling_.density(v);
+    r.x           = state.x - xhat - tau * velocity - state.volume_shift * coupling_.density(v);
     return r;
+  }
+
+
+  ControlPoints
+  NewtonSolver::shell_velocity(const State &state) const
+  {
+    return coupling_.interpolate(state.fluid) + flow_.velocity(state.x);
+  }
+
+
+  double
+  NewtonSolver::speed(const Residual &r, const double tau) const
+  {
+    return std::sqrt(r.shell_speed * r.shell_speed + r.x.squaredNorm() / (r.x.rows() * tau * tau) +
+                     (std::pow(r.flux, 2) + std::pow(r.volume / tau, 2)) / std::pow(3. * volume_, 2));
   }
 
 
   double
   NewtonSolver::norm(const Residual &r, const LinearisedShell &shell) const
   {
-    const double n_points = r.x.rows(), tau = shell.tau();
-    return std::sqrt(r.shell_speed * r.shell_speed + r.x.squaredNorm() / (n_points * tau * tau) + shell.displacement_of_force(r.force).squaredNorm() / (n_points * tau * tau) +
-                     (std::pow(r.flux, 2) + std::pow(r.volume / tau, 2)) / std::pow(3. * volume_, 2));
+    const double from_forces = std::sqrt(shell.displacement_of_force(r.force).squaredNorm() / r.x.rows()) / shell.tau();
+    return std::hypot(speed(r, shell.tau()), from_forces);
   }
 
 
@@ -116,7 +129,7 @@ namespace tanktread
     if (derivatives == PointDerivatives::complete)
       gradients = coupling_.velocity_gradients(state.fluid);
     gradients.col(2).array() += flow_.shear_rate; // du_x/dz
-    return {shell_, surface_, coupling_, state, gradients, derivatives, tau, finest_cell()};
+    return {shell_, surface_, coupling_, state, shell_velocity(state), gradients, derivatives, tau, finest_cell()};
   }
 
 
@@ -183,7 +196,7 @@ namespace tanktread
     try
       {
         Residual r      = residual(trial, xhat, tau);
-        double   length = std::numeric_limits<double>::infinity(); // of the next displacement
+        double   length = tau * speed(r, tau); // about that of the next displacement
         for (bool solved = false; !solved;)
           {
             if (report.newton_iterations == parameters_.max_newton_iterations)
@@ -228,6 +241,6 @@ namespace tanktread
                            " iterations, from " + std::to_string(report.initial_residual) + '.');
     increment.x.setZero();
     state = moved(state, increment, 1.);
-    return coupling_.interpolate(state.fluid) + flow_.velocity(state.x);
+    return shell_velocity(state);
   }
 } // namespace tanktread

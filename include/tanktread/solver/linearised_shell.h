@@ -63,11 +63,15 @@ namespace tanktread
   class LinearisedShell
   {
   public:
-    /** @param velocity_gradient at the coupling's points, of the flow whose Gamma is meant. @param h finest fluid cell. Throws NumericalError when one of the two matrices is singular. */
+    /**
+     * @param velocity of the control points, J u + u_inf(x). @param velocity_gradient at the coupling's points, of the flow whose Gamma is meant. @param h finest fluid
+     * cell. Throws NumericalError when one of the two matrices is singular.
+     */
     LinearisedShell(const Shell              &shell,
                     const SubdivisionSurface &surface,
                     const Coupling           &coupling,
                     const State              &state,
+                    const ControlPoints      &velocity,
                     const VelocityGradients  &velocity_gradient,
                     PointDerivatives          derivatives,
                     double                    tau,
@@ -81,7 +85,7 @@ namespace tanktread
     ControlPoints
     displacement_of_residual(const ControlPoints &r_x, double r_V) const;
 
-    /** Change of the volume flux v . J u through the shell: m . (moments + Gamma dx) + (H_V J u) . dx with m = M^{-1} v. */
+    /** Change of the rate of volume v . (J u + u_inf): m . (moments + Gamma dx) + (H_V (J u + u_inf)) . dx with m = M^{-1} v. */
     double
     flux(const ControlPoints &velocity_moments, const ControlPoints &dx) const;
 
@@ -137,7 +141,7 @@ namespace tanktread
     double          tau_;
     ControlPoints   volume_gradient_, density_;
     ControlPoints   normal_field_;       // m = M^{-1} v
-    ControlPoints   flux_gradient_;      // derivative of v . J u by x: Gamma^T m + H_V J u
+    ControlPoints   flux_gradient_;      // derivative of that rate by x: Gamma^T m + H_V (J u + u_inf)
     ControlPoints   volume_response_;    // A^{-1} v
     SparseMatrix    pressure_stiffness_; // pi H_V
     SparseMatrix    stiffness_;          // K - pi H_V

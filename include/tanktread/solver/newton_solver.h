@@ -33,14 +33,14 @@ namespace tanktread
     double           shell_speed;  // root mean square of J A^{-1} r_u: about how fast the missing forces would move the shell
     ControlPoints    x;            // x - xhat - tau (J u + undisturbed flow) - sigma m
     ControlPoints    force;        // F - f(x)
-    double           flux;         // v . J u
+    double           flux;         // v . (J u + u_inf)
     double           volume;       // V - V0
   };
 
   /**
    * Solves for all unknowns of a time level together, by Newton's method with the complete derivative:
    *
-   *     A u - B^T p = R(x)(F + pi v(x)),   B u = 0,   v . J(x) u = 0,   F = f(x),
+   *     A u - B^T p = R(x)(F + pi v(x)),   B u = 0,   v . (J(x) u + u_inf) = 0,   F = f(x),
    *     x = xhat + tau (J(x) u + u_inf(x)) + sigma m(x),   V(x) = V0,   v = dV/dx,   m = M^{-1} v.
    *
    * xhat and tau carry the time scheme: x_n and dt for backward Euler. The pressure jump pi lets no volume through the shell at the new time level; what a finite step
@@ -75,8 +75,14 @@ namespace tanktread
   private:
     Residual
     residual(const State &state, const ControlPoints &xhat, double tau);
+    /** Part of the norm that needs no linearisation. */
+    double
+    speed(const Residual &r, double tau) const;
     double
     norm(const Residual &r, const LinearisedShell &shell) const;
+    /** Velocity of the control points, J u + u_inf; the coupling's points must be at state.x. */
+    ControlPoints
+    shell_velocity(const State &state) const;
     double
     shell_speed(const FluidBlockVector &load) const;
     bool
