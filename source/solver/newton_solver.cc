@@ -133,6 +133,14 @@ namespace tanktread
   }
 
 
+  double
+  NewtonSolver::forcing_term(const double norm) const
+  {
+    // As accurate as the second order of the iteration deserves, but no more than the tolerance asks for.
+    return std::min(parameters_.linear_tolerance, std::max(0.3 * norm, 0.3 * parameters_.newton_tolerance / norm));
+  }
+
+
   LinearReport
   NewtonSolver::linear_solve(const Residual &r, const LinearisedShell &shell, const double tolerance, State &increment)
   {
@@ -205,7 +213,7 @@ namespace tanktread
             const LinearisedShell shell = linearised(trial, near ? PointDerivatives::complete : PointDerivatives::frozen, tau);
             if (report.residuals.empty())
               report.residuals.push_back(norm(r, shell));
-            const LinearReport linear = linear_solve(r, shell, parameters_.linear_tolerance, increment);
+            const LinearReport linear = linear_solve(r, shell, forcing_term(report.residuals.back()), increment);
             ++report.newton_iterations;
             report.linear_iterations += linear.iterations;
             if (!linear.converged)

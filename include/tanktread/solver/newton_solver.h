@@ -91,6 +91,9 @@ namespace tanktread
     linearised(const State &state, PointDerivatives derivatives, double tau);
     double
     finest_cell() const;
+    /** Relative residual at which the linear solver may stop when the norm of the nonlinear residual is `norm`. */
+    double
+    forcing_term(double norm) const;
     LinearReport
     linear_solve(const Residual &r, const LinearisedShell &shell, double tolerance, State &increment);
     /**

@@ -31,7 +31,7 @@ namespace tanktread
     Interface    interface             = Interface::plain;
     double       newton_tolerance      = 1e-5;
     double       volume_tolerance      = 1e-9;
-    double       linear_tolerance      = 1e-3;
+    double       linear_tolerance      = 0.1;
     unsigned int max_newton_iterations = 12;
     unsigned int max_linear_iterations = 200;
 
