@@ -1,0 +1,74 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Part of Tanktread: runs a parameter file and checks how it ends.
+"""The last row of history.csv is compared with values from an independent solution (--expect D_xz=0.38,0.05: within 5 %), the volume error of every row with --volume-error; or
+the run has to fail with a given exit code and message (--exit-code 2 --message TEXT) and leave its last good state."""
+
+import argparse
+import csv
+import pathlib
+import subprocess
+import sys
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--program", required=True)
+    parser.add_argument("--prm", required=True)
+    parser.add_argument("--output", required=True)
+    parser.add_argument("--ranks", type=int, default=1)
+    parser.add_argument("--set", action="append", default=[], metavar="SECTION/PARAMETER=VALUE")
+    parser.add_argument("--expect", action="append", default=[], metavar="COLUMN=VALUE,RELATIVE")
+    parser.add_argument("--volume-error", type=float, default=1e-8)
+    parser.add_argument("--time", type=float, help="time that the run has to reach")
+    parser.add_argument("--exit-code", type=int, default=0)
+    parser.add_argument("--message", default="")
+    return parser.parse_args()
+
+
+def run(args):
+    command = ["mpirun", "--oversubscribe", "-np", str(args.ranks), args.program, args.prm]
+    for setting in args.set + [f"Output/Directory={args.output}"]:
+        command += ["--set", setting]
+    print(" ".join(command), flush=True)
+    result = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    print(result.stdout)
+    return result.returncode, result.stdout
+
+
+def failures_of_history(args):
+    with open(pathlib.Path(args.output) / "history.csv", newline="") as file:
+        rows = [{name: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
+    largest = max(abs(row["volume_error"]) for row in rows)
+    print(f"volume error of {len(rows)} rows: at most {largest:.1e}")
+    if not largest <= args.volume_error:
+        yield f"volume error {largest}, allowed {args.volume_error}"
+    if args.time is not None and rows[-1]["time"] < args.time * (1 - 1e-9):
+        yield f"ended at time {rows[-1]['time']}, expected {args.time}"
+    for expectation in args.expect:
+        column, _, numbers = expectation.partition("=")
+        value, relative = (float(number) for number in numbers.split(","))
+        difference = rows[-1][column] / value - 1
+        print(f"{column}: {rows[-1][column]:.6f}, reference {value:.6f}, difference {100 * difference:+.2f} %")
+        if not abs(difference) <= relative:
+            yield f"{column} differs by {100 * difference:+.2f} %, allowed {100 * relative} %"
+
+
+def main():
+    args = arguments()
+    code, said = run(args)
+    failures = []
+    if code != args.exit_code:
+        failures.append(f"exit code {code}, expected {args.exit_code}")
+    elif code == 0:
+        failures += failures_of_history(args)
+    elif not (pathlib.Path(args.output) / "failed_shell.vtu").exists():
+        failures.append("failed_shell.vtu was not written")
+    if args.message not in said:
+        failures.append(f"not said: {args.message}")
+    print("\n".join(failures) if failures else "passed")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
