@@ -70,11 +70,11 @@ main(int argc, char *argv[])
     result = exit_code_of(
       MPI_COMM_WORLD,
       [] {
-        int n_ranks;
-        MPI_Comm_size(MPI_COMM_WORLD, &n_ranks);
-        if (this_rank() == n_ranks - 1)
-          throw NumericalError("the last rank has failed");
-        MPI_Barrier(MPI_COMM_WORLD);
+      int n_ranks;
+      MPI_Comm_size(MPI_COMM_WORLD, &n_ranks);
+      if (this_rank() == n_ranks - 1)
+        throw NumericalError("the last rank has failed");
+      MPI_Barrier(MPI_COMM_WORLD);
       },
       0.5);
   else
