@@ -40,6 +40,26 @@ namespace tanktread
       result.update_ghost_values();
       return result;
     }
+
+
+    FluidVector
+    total_pressure(const TaylorHoodSpace &space, const FluidBlockVector &fields, const std::function<double(const dealii::Point<3> &)> &further_pressure)
+    {
+      FluidVector continuous(fields.block(pressure_block));
+      space.pressure.constraints().distribute(continuous);
+      FluidVector                                  result(continuous);
+      std::vector<dealii::types::global_dof_index> indices(8);
+      for (const auto &cell : space.pressure.dofs().active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            cell->get_dof_indices(indices);
+            for (unsigned int v = 0; v < 8; ++v)
+              if (result.locally_owned_elements().is_element(indices[v]))
+                result(indices[v]) = continuous(indices[v]) + further_pressure(cell->vertex(v));
+          }
+      result.update_ghost_values();
+      return result;
+    }
   } // namespace
 
 
@@ -49,15 +69,14 @@ namespace tanktread
                      const unsigned int      counter,
                      const TaylorHoodSpace  &space,
                      const FluidBlockVector &fields,
-                     const double            shear_rate)
+                     const double            shear_rate,
+                     const std::function<double(const dealii::Point<3> &)> &further_pressure)
   {
     const dealii::FESystem<3> fe(space.velocity.dofs().get_fe(), 3);
     dealii::DoFHandler<3>     vector_dofs(space.mesh.triangulation());
     vector_dofs.distribute_dofs(fe);
     const FluidVector velocity = total_velocity(space, fields, shear_rate, vector_dofs);
-    FluidVector       pressure(fields.block(pressure_block));
-    space.pressure.constraints().distribute(pressure);
-    pressure.update_ghost_values();
+    const FluidVector pressure = total_pressure(space, fields, further_pressure);
     dealii::Vector<float> rank(space.mesh.triangulation().n_active_cells());
     rank = space.mesh.triangulation().locally_owned_subdomain();
 

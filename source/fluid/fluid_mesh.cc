@@ -48,19 +48,21 @@ namespace tanktread
   }
 
 
-  CellKey
-  FluidMesh::key(const dealii::Point<3> &point, const unsigned int level) const
+  FluidMesh::Place
+  FluidMesh::place(const dealii::Point<3> &point, const unsigned int level) const
   {
     const int n = n_coarse_ << level;
-    CellKey   result{level, {}};
+    Place     result;
+    result.key.level = level;
     for (unsigned int d = 0; d < 3; ++d)
       {
-        int i = static_cast<int>(std::floor((point[d] / side_ + 0.5) * n));
-        if (d < 2)
-          i = ((i % n) + n) % n;
-        else if (i < 0 || i >= n)
-          throw NumericalError("The shell has reached a wall: z = " + std::to_string(point[d]) + ", walls at +-" + std::to_string(0.5 * side_) + '.');
-        result.position[d] = i;
+        const double scaled = (point[d] / side_ + 0.5) * n;
+        if (!(std::abs(scaled) < 1e9) || (d == 2 && !(scaled >= 0. && scaled < n)))
+          throw NumericalError("The shell has left the fluid: coordinate " + std::to_string(point[d]) + " along axis " + std::to_string(d) + ", walls at z = +-" +
+                               std::to_string(0.5 * side_) + '.');
+        const int i            = static_cast<int>(std::floor(scaled));
+        result.key.position[d] = ((i % n) + n) % n;
+        result.unit[d]         = scaled - i;
       }
     return result;
   }
@@ -69,7 +71,7 @@ namespace tanktread
   CellKey
   FluidMesh::key(const dealii::Triangulation<3>::cell_iterator &cell) const
   {
-    return key(cell->center(), cell->level());
+    return place(cell->center(), cell->level()).key;
   }
 
 
@@ -88,7 +90,7 @@ namespace tanktread
     };
     for (const auto &point : points)
       {
-        key(point, finest_level_); // throws if the point is outside
+        place(point, finest_level_); // throws if the point is outside
         std::array<int, 3> low, high;
         for (unsigned int d = 0; d < 3; ++d)
           {

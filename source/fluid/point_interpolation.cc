@@ -32,17 +32,12 @@ namespace tanktread
     Location result;
     for (const unsigned int level : levels_)
       {
-        const CellKey key   = mesh_.key(point, level);
-        const auto    found = cells_.find(key.packed());
+        const FluidMesh::Place place = mesh_.place(point, level);
+        const auto             found = cells_.find(place.key.packed());
         if (found == cells_.end())
           continue;
-        result.cell    = found->second;
-        const double h = mesh_.cell_size(level);
-        for (unsigned int d = 0; d < 3; ++d)
-          {
-            const double x = (point[d] + 0.5 * mesh_.side()) / h;
-            result.unit[d] = x - std::floor(x);
-          }
+        result.cell = found->second;
+        result.unit = place.unit;
         break;
       }
     return result;
@@ -106,6 +101,7 @@ namespace tanktread
     entries_.clear();
     for (unsigned int q = 0; q < n_points_; ++q)
       {
+        space_.mesh.place(points[q], 0); // throws on all ranks alike, also on those without cells
         const CellLocator::Location location = locator_.locate(points[q]);
         if (location.cell < 0)
           continue;

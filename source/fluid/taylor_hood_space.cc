@@ -7,6 +7,8 @@
 #include <tanktread/fluid/compat.h>
 #include <tanktread/fluid/taylor_hood_space.h>
 
+#include <algorithm>
+
 namespace tanktread
 {
   namespace

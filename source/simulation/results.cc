@@ -4,10 +4,12 @@
 #include <deal.II/base/numbers.h>
 
 #include <Eigen/SparseCholesky>
+#include <tanktread/base/mpi_errors.h>
 #include <tanktread/fluid/field_output.h>
 #include <tanktread/simulation/results.h>
 #include <tanktread/surface/capsule_shape.h>
 #include <tanktread/surface/contour.h>
+#include <tanktread/surface/interior.h>
 #include <tanktread/surface/surface_operators.h>
 
 #include <cmath>
@@ -38,13 +40,6 @@ namespace tanktread
                                                     "step",
                                                     "cells"};
 
-    /** Control values of the surface field nearest, in the mean square, to values at the quadrature points. */
-    Eigen::MatrixXd
-    projected(const SubdivisionSurface &surface, const Eigen::VectorXd &weights, const Eigen::MatrixXd &values)
-    {
-      const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> mass(mass_matrix(surface, weights));
-      return mass.solve(surface.S().transpose() * (weights.asDiagonal() * values));
-    }
   } // namespace
 
 
@@ -53,6 +48,7 @@ namespace tanktread
   {
     Observables result;
     result.ellipsoid     = inertia_ellipsoid(shell.surface, state.x);
+    result.theta_over_pi = result.ellipsoid.taylor_parameter < 1e-4 ? std::numeric_limits<double>::quiet_NaN() : result.ellipsoid.inclination / dealii::numbers::PI;
     result.volume        = enclosed_volume(shell.surface, state.x);
     result.volume_error  = result.volume / shell.initial_volume - 1.;
     result.area          = surface_area(shell.surface, state.x);
@@ -69,39 +65,41 @@ namespace tanktread
   }
 
 
-  Results::Results(const std::string &folder, const bool first_rank)
+  Results::Results(const std::string &folder, const MPI_Comm communicator)
     : folder_(folder)
-    , first_rank_(first_rank)
-    , history_(folder + "/history.csv", history_names, first_rank)
-    , contours_(folder + "/contours.csv", {"time", "x", "z"}, first_rank)
+    , communicator_(communicator)
     , shell_series_(folder + "/shell.pvd")
     , fluid_series_(folder + "/fluid.pvd")
-  {}
+  {
+    on_first_rank(communicator, [&] {
+      history_  = std::make_unique<CsvWriter>(folder + "/history.csv", history_names);
+      contours_ = std::make_unique<CsvWriter>(folder + "/contours.csv", std::vector<std::string>{"time", "x", "z"});
+    });
+  }
 
 
   void
   Results::add_history(const Observables &o)
   {
-    // The inclination of a circle is not defined.
-    const double theta = o.ellipsoid.taylor_parameter < 1e-4 ? std::numeric_limits<double>::quiet_NaN() : o.ellipsoid.inclination / dealii::numbers::PI;
-    history_.row({o.time,
-                  o.ellipsoid.taylor_parameter,
-                  theta,
-                  o.ellipsoid.L,
-                  o.ellipsoid.B,
-                  o.ellipsoid.W,
-                  o.volume,
-                  o.volume_error,
-                  o.area,
-                  o.energy.membrane,
-                  o.energy.bending,
-                  o.dissipation,
-                  double(o.newton_iterations),
-                  double(o.linear_iterations),
-                  o.wall_time,
-                  o.pressure_jump,
-                  o.step,
-                  o.n_cells});
+    const std::vector<double> row = {o.time,
+                                     o.ellipsoid.taylor_parameter,
+                                     o.theta_over_pi,
+                                     o.ellipsoid.L,
+                                     o.ellipsoid.B,
+                                     o.ellipsoid.W,
+                                     o.volume,
+                                     o.volume_error,
+                                     o.area,
+                                     o.energy.membrane,
+                                     o.energy.bending,
+                                     o.dissipation,
+                                     double(o.newton_iterations),
+                                     double(o.linear_iterations),
+                                     o.wall_time,
+                                     o.pressure_jump,
+                                     o.step,
+                                     o.n_cells};
+    on_first_rank(communicator_, [&] { history_->row(row); });
   }
 
 
@@ -114,20 +112,30 @@ namespace tanktread
     const ControlPoints   f       = shell.shell.force(state.x);
     const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> mass(mass_matrix(shell.surface, weights));
 
+    // Control values of the surface field nearest, in the mean square, to values at the quadrature points.
+    const auto projected = [&](const Eigen::VectorXd &values) -> Eigen::VectorXd {
+      return mass.solve(shell.surface.S().transpose() * weights.cwiseProduct(values));
+    };
     std::vector<std::pair<std::string, Eigen::MatrixXd>> fields = {{"velocity", limit * velocity},
                                                                    {"force_density", limit * Eigen::MatrixXd(mass.solve(Eigen::MatrixXd(f)))},
-                                                                   {"area_stretch", limit * projected(shell.surface, weights, stretch)}};
+                                                                   {"area_stretch", limit * projected(stretch)}};
     if (shell.surface.derivatives() == Derivatives::second)
-      fields.emplace_back("mean_curvature", limit * projected(shell.surface, weights, mean_curvature(shell.surface, state.x)));
+      fields.emplace_back("mean_curvature", limit * projected(mean_curvature(shell.surface, state.x)));
     write_surface_vtu(file, limit * state.x, shell.topology.faces, fields);
   }
 
 
   void
-  Results::add_contour(const double time, const TriangleMesh &limit_surface)
+  Results::add_contour(const double time, const TriangleMesh &topology, const ControlPoints &x)
   {
-    for (const Eigen::Vector2d &point : shear_plane_contour(limit_surface))
-      contours_.row({time, point[0], point[1]});
+    // Refined twice, the polygon that is cut is close to the smooth surface.
+    TriangleMesh mesh = topology;
+    for (Eigen::Index i = 0; i < x.rows(); ++i)
+      mesh.vertices[i] = x.row(i);
+    mesh = loop_refine(loop_refine(mesh));
+    const Eigen::Map<const ControlPoints> refined(mesh.vertices.front().data(), mesh.vertices.size(), 3);
+    for (const Eigen::Vector2d &point : shear_plane_contour(limit_mesh(mesh, refined)))
+      contours_->row({time, point[0], point[1]});
   }
 
 
@@ -136,15 +144,23 @@ namespace tanktread
   {
     std::ostringstream number;
     number << std::setw(4) << std::setfill('0') << n_fields_;
-    const std::string fluid_file = write_fluid_fields(folder_, "fluid", n_fields_, fluid.space(), state.fluid, shear_rate);
-    if (first_rank_)
-      {
-        const std::string shell_file = "shell_" + number.str() + ".vtu";
-        write_shell(folder_ + "/" + shell_file, shell, state, velocity);
-        add_contour(time, limit_mesh(shell.topology, state.x));
-        shell_series_.add(time, shell_file);
-        fluid_series_.add(time, fluid_file);
-      }
+    const Interior interior(shell.surface, state.x);
+    const double   side              = fluid.mesh().side();
+    const auto     interior_pressure = [&](const dealii::Point<3> &point) {
+      // The periodic image of the point that is nearest to the capsule.
+      Eigen::Vector3d y(point[0], point[1], point[2]);
+      for (unsigned int d = 0; d < 2; ++d)
+        y[d] -= side * std::round((y[d] - interior.centre()[d]) / side);
+      return interior.contains(y) ? state.pressure_jump : 0.;
+    };
+    const std::string fluid_file = write_fluid_fields(folder_, "fluid", n_fields_, fluid.space(), state.fluid, shear_rate, interior_pressure);
+    on_first_rank(communicator_, [&] {
+      const std::string shell_file = "shell_" + number.str() + ".vtu";
+      write_shell(folder_ + "/" + shell_file, shell, state, velocity);
+      add_contour(time, shell.topology, state.x);
+      shell_series_.add(time, shell_file);
+      fluid_series_.add(time, fluid_file);
+    });
     ++n_fields_;
   }
 
@@ -153,8 +169,7 @@ namespace tanktread
   Results::write_failed(const ShellView &shell, const State &state) const
   {
     const std::string file = folder_ + "/failed_shell.vtu";
-    if (first_rank_)
-      write_shell(file, shell, state, ControlPoints::Zero(state.x.rows(), 3));
+    on_first_rank(communicator_, [&] { write_shell(file, shell, state, ControlPoints::Zero(state.x.rows(), 3)); });
     return file;
   }
 } // namespace tanktread

@@ -11,7 +11,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
+#include <utility>
 
 namespace tanktread
 {
@@ -60,16 +62,26 @@ namespace tanktread
     , shape_(make_capsule(parameters.capsule, parameters.shell_mesh.level))
     , surface_(shape_.topology, triangle_quadrature(parameters.shell_mesh.quadrature), derivatives_needed(parameters))
     , shell_(surface_, parameters.shell, {parameters.scene.surface_young_modulus(), parameters.scene.bending_modulus()}, shape_.control_points)
+    , fluid_(communicator, parameters.scene.box_side, parameters.fluid_mesh)
     , coupling_surface_(shape_.topology,
-                        triangle_quadrature(3, coupling_subdivisions(shape_.topology, shape_.control_points, 3, parameters.fluid_mesh.finest_cell)),
+                        triangle_quadrature(3, coupling_subdivisions(shape_.topology, shape_.control_points, 3, fluid_.mesh().cell_size(fluid_.mesh().finest_level()))),
                         Derivatives::first)
     , coupling_(coupling_surface_, area_weights(coupling_surface_, shape_.control_points))
     , view_{shape_.topology, surface_, shell_, enclosed_volume(surface_, shape_.control_points)}
     , flow_{parameters.scene.flow == Flow::shear ? 1. : 0.}
-    , fluid_(communicator, parameters.scene.box_side, parameters.fluid_mesh)
     , solver_(parameters.solver, shell_, surface_, coupling_, view_.initial_volume, flow_, timings_)
     , next_length_(parameters.time.step)
-  {}
+    , next_fields_(parameters.output.field_interval)
+  {
+    state_.x                       = shape_.control_points;
+    const Eigen::RowVector3d extent = 2. * state_.x.cwiseAbs().colwise().maxCoeff();
+    if (extent.maxCoeff() >= parameters.scene.box_side)
+      {
+        std::ostringstream message;
+        message << "Scene/Box side is " << parameters.scene.box_side << "; allowed: more than the capsule's extent, " << extent.maxCoeff() << '.';
+        throw InputError(message.str());
+      }
+  }
 
 
   void
@@ -78,31 +90,36 @@ namespace tanktread
     const Timings::Scope scope(timings_, "Fluid mesh and matrices");
     fluid_.adapt(coupling_.points(state_.x));
     solver_.attach(fluid_);
-    coupling_.move(state_.x);
     previous_state_.reset();
     fluid_.space().reinit(state_.fluid);
   }
 
 
   void
-  Simulation::start()
+  Simulation::make_folder()
   {
     const std::string folder = parameters_.output.directory;
     std::string       moved_to;
     on_first_rank(communicator_, [&] {
       moved_to = prepare_output_folder(folder);
       log_.open(folder + "/log.txt");
-      std::ofstream(folder + "/used_parameters.prm") << parameters_.used;
+      std::ofstream file(folder + "/used_parameters.prm");
+      if (!(file << parameters_.used << std::flush))
+        throw InputError("Output/Directory: cannot write '" + folder + "/used_parameters.prm'.");
     });
     log_.header(description(parameters_, dealii::Utilities::MPI::n_mpi_processes(communicator_)));
     if (!moved_to.empty())
       log_.line("The folder held a former run, now in " + moved_to + ".");
-    results_ = std::make_unique<Results>(folder, first_rank_);
+    results_ = std::make_unique<Results>(folder, communicator_);
+  }
 
-    state_.x = shape_.control_points;
-    refine_around_shell();
+
+  void
+  Simulation::start()
+  {
     StepResult first;
-    solver_.solve_flow(state_, first.linear_iterations);
+    refine_around_shell();
+    first.linear_iterations = solver_.solve_flow(state_);
 
     std::ostringstream text;
     text << "Shell: " << surface_.n_control_points() << " control points, " << surface_.n_points() << " quadrature points, " << coupling_surface_.n_points()
@@ -111,13 +128,6 @@ namespace tanktread
          << fluid_.space().pressure.dofs().n_dofs() << " pressure unknowns.";
     log_.line(text.str());
     record(first, false);
-  }
-
-
-  ControlPoints
-  Simulation::shell_velocity() const
-  {
-    return coupling_.interpolate(state_.fluid) + flow_.velocity(state_.x);
   }
 
 
@@ -136,50 +146,64 @@ namespace tanktread
   }
 
 
-  Simulation::StepResult
-  Simulation::implicit_step()
+  NewtonReport
+  Simulation::try_step(const double length, const bool from_extrapolation)
   {
-    StepResult   result;
-    const double wanted   = std::min(next_length_, parameters_.scene.end_time - time_);
-    const bool   bdf2     = parameters_.time.scheme == TimeScheme::bdf2 && previous_x_.size() > 0;
-    bool         rejected = false;
-    for (result.length = wanted; result.length > 1e-3 * std::min(wanted, parameters_.time.step); result.length *= 0.5)
+    const bool         bdf2  = parameters_.time.scheme == TimeScheme::bdf2 && previous_x_.size() > 0;
+    const ImplicitStep step  = bdf2 ? bdf2_step(state_.x, previous_x_, length, previous_length_) : backward_euler_step(state_.x, length);
+    State              guess = from_extrapolation ? extrapolated(length) : state_;
+    const NewtonReport report = solver_.solve(guess, step.xhat, step.tau);
+    if (report.converged)
       {
-        State              guess = rejected ? state_ : extrapolated(result.length);
-        const ImplicitStep step =
-          bdf2 ? bdf2_step(state_.x, previous_x_, result.length, previous_length_) : backward_euler_step(state_.x, result.length);
-        const NewtonReport report = solver_.solve(guess, step.xhat, step.tau);
-        result.newton_iterations += report.newton_iterations;
-        result.linear_iterations += report.linear_iterations;
-        if (report.converged)
-          {
-            previous_state_  = std::make_unique<State>(std::move(state_));
-            previous_x_      = previous_state_->x;
-            previous_length_ = result.length;
-            state_           = std::move(guess);
-            next_length_     = rejected ? result.length : std::min(parameters_.time.step, 1.5 * next_length_);
-            return result;
-          }
-        rejected = true;
+        previous_state_  = std::make_unique<State>(std::move(state_));
+        previous_x_      = previous_state_->x;
+        previous_length_ = length;
+        state_           = std::move(guess);
+      }
+    else
+      {
         std::ostringstream text;
-        text << "Step of length " << result.length << " rejected: " << report.message << " (residuals";
+        text << "Step of length " << length << " failed from the " << (from_extrapolation ? "extrapolated" : "last") << " state: " << report.message << " (residuals";
         for (const double residual : report.residuals)
           text << ' ' << residual;
         log_.line(text.str() + ").");
       }
-    throw NumericalError("The time step has been halved ten times without success.");
+    return report;
+  }
+
+
+  Simulation::StepResult
+  Simulation::implicit_step()
+  {
+    StepResult   result;
+    const double wanted = std::min(next_length_, parameters_.scene.end_time - time_), shortest = std::min(wanted, 1e-3 * parameters_.time.step);
+    for (result.length = wanted; result.length >= shortest; result.length *= 0.5)
+      for (const bool from_extrapolation : {true, false})
+        {
+          if (from_extrapolation && (!previous_state_ || result.length < wanted))
+            continue;
+          const NewtonReport report = try_step(result.length, from_extrapolation);
+          result.newton_iterations += report.newton_iterations;
+          result.linear_iterations += report.linear_iterations;
+          if (report.converged)
+            {
+              next_length_ = result.length < wanted ? result.length : std::min(parameters_.time.step, 1.5 * next_length_);
+              return result;
+            }
+        }
+    throw NumericalError("No time step between " + std::to_string(shortest) + " and " + std::to_string(wanted) + " could be solved.");
   }
 
 
   void
-  Simulation::check_explicit_step(const ControlPoints &displacement) const
+  Simulation::check_explicit_step(const ControlPoints &displacement, const double length) const
   {
     const double largest = std::sqrt(displacement.rowwise().squaredNorm().maxCoeff());
     if (!(largest < 1.))
       {
         std::ostringstream message;
         message << "The explicit coupling is unstable at this step: a control point would move by " << largest
-                << " a in one step of " << next_length_ << ". Take a smaller Time/Step or Solver/Coupling = implicit.";
+                << " a in one step of " << length << ". Take a smaller Time/Step or Solver/Coupling = implicit.";
         throw NumericalError(message.str());
       }
   }
@@ -190,17 +214,16 @@ namespace tanktread
   {
     StepResult result;
     result.length              = std::min(parameters_.time.step, parameters_.scene.end_time - time_);
-    const ControlPoints change = result.length * shell_velocity();
-    check_explicit_step(change);
+    const ControlPoints change = result.length * solver_.shell_velocity(state_);
+    check_explicit_step(change, result.length);
     State next = state_;
     next.x += change;
     try
       {
-        solver_.solve_flow(next, result.linear_iterations);
+        result.linear_iterations = solver_.solve_flow(next);
       }
     catch (const NumericalError &error)
       {
-        coupling_.move(state_.x);
         throw NumericalError(std::string("The explicit coupling failed at this step: ") + error.what() + " Take a smaller Time/Step or Solver/Coupling = implicit.");
       }
     state_ = std::move(next);
@@ -209,9 +232,25 @@ namespace tanktread
 
 
   bool
-  Simulation::is_steady(const InertiaEllipsoid &before, const InertiaEllipsoid &after, const double length) const
+  Simulation::is_steady(const InertiaEllipsoid &before, const InertiaEllipsoid &after, const double length)
   {
-    return rate_of_change(before, after, length) < parameters_.time.steady_tolerance;
+    // Three steps in a row: at an extremum of the shape one alone may be quiet.
+    n_quiet_steps_ = rate_of_change(before, after, length) < parameters_.time.steady_tolerance ? n_quiet_steps_ + 1 : 0;
+    return n_quiet_steps_ == 3;
+  }
+
+
+  bool
+  Simulation::is_due(double &next, const double interval) const
+  {
+    const double rounding = 1e-9 * parameters_.scene.end_time;
+    if (time_ < next - rounding)
+      return false;
+    if (interval == 0.)
+      return true;
+    while (next <= time_ + rounding)
+      next += interval;
+    return true;
   }
 
 
@@ -226,18 +265,11 @@ namespace tanktread
     o.newton_iterations    = step.newton_iterations;
     o.linear_iterations    = step.linear_iterations;
     o.wall_time            = timings_.elapsed();
-    const double rounding  = 1e-9 * parameters_.scene.end_time;
-    if (last || time_ >= next_history_ - rounding)
-      {
-        results_->add_history(o);
-        next_history_ = time_ + parameters_.output.history_interval;
-      }
-    if (last || time_ >= next_fields_ - rounding)
-      {
-        results_->add_fields(time_, view_, shell_velocity(), fluid_, state_, flow_.shear_rate);
-        const double interval = parameters_.output.field_interval;
-        next_fields_          = interval > 0. ? next_fields_ + interval : std::numeric_limits<double>::max();
-      }
+    const bool first = n_steps_ == 0, fields_wanted = parameters_.output.field_interval > 0.;
+    if (is_due(next_history_, parameters_.output.history_interval) || last)
+      results_->add_history(o);
+    if (first || last || (fields_wanted && is_due(next_fields_, parameters_.output.field_interval)))
+      results_->add_fields(time_, view_, solver_.shell_velocity(state_), fluid_, state_, flow_.shear_rate);
     const double remaining = n_steps_ == 0 ? -1. : o.wall_time * (parameters_.scene.end_time - time_) / time_;
     log_.step({n_steps_,
                time_,
@@ -245,42 +277,50 @@ namespace tanktread
                step.newton_iterations,
                step.linear_iterations,
                o.ellipsoid.taylor_parameter,
-               o.ellipsoid.inclination / dealii::numbers::PI,
+               o.theta_over_pi,
                o.volume_error,
                remaining});
   }
 
 
   void
+  Simulation::advance()
+  {
+    const double rounding = 1e-9 * parameters_.scene.end_time;
+    start();
+    for (bool last = parameters_.scene.end_time <= 0.; !last;)
+      {
+        const InertiaEllipsoid before = ellipsoid_;
+        StepResult             step   = parameters_.solver.coupling == TimeCoupling::explicit_euler ? explicit_step() : implicit_step();
+        step.linear_iterations += std::exchange(remeshing_iterations_, 0);
+        time_ += step.length;
+        ++n_steps_;
+        const bool steady = is_steady(before, inertia_ellipsoid(surface_, state_.x), step.length);
+        last              = steady || time_ >= parameters_.scene.end_time - rounding;
+        record(step, last);
+        if (steady)
+          log_.line("Steady: axes and inclination have changed slower than Time/Steady tolerance in three steps.");
+        if (!last && !fluid_.mesh().covers(coupling_.points(state_.x)))
+          {
+            refine_around_shell();
+            remeshing_iterations_ = solver_.solve_flow(state_);
+          }
+      }
+  }
+
+
+  void
   Simulation::run()
   {
-    start();
-    const double rounding = 1e-9 * parameters_.scene.end_time;
+    make_folder();
     try
       {
-        for (bool last = false; !last;)
-          {
-            const InertiaEllipsoid before = ellipsoid_;
-            const StepResult       step   = parameters_.solver.coupling == TimeCoupling::explicit_euler ? explicit_step() : implicit_step();
-            time_ += step.length;
-            ++n_steps_;
-            const bool steady = is_steady(before, inertia_ellipsoid(surface_, state_.x), step.length);
-            last              = steady || time_ >= parameters_.scene.end_time - rounding;
-            record(step, last);
-            if (steady)
-              log_.line("Steady: axes and inclination change slower than Time/Steady tolerance.");
-            if (!last && !fluid_.mesh().covers(coupling_.points(state_.x)))
-              {
-                refine_around_shell();
-                unsigned int iterations;
-                solver_.solve_flow(state_, iterations);
-              }
-          }
+        advance();
       }
     catch (const NumericalError &error)
       {
-        const std::string file = results_->write_failed(view_, state_);
-        log_.line(std::string("FAILED at time ") + std::to_string(time_) + ": " + error.what() + " Last good state: " + file + ".");
+        log_.line("FAILED at time " + std::to_string(time_) + ": " + error.what());
+        log_.line("Last good state: " + results_->write_failed(view_, state_) + ".");
         log_.timings(timings_);
         throw;
       }

@@ -64,28 +64,20 @@ namespace tanktread
     : stokes_(stokes)
     , shell_(shell)
     , volume_(volume)
-    , velocity_scratch_(stokes.stokes().space().velocity.partitioner())
-  {}
+  {
+    stokes.stokes().space().reinit(loads_);
+  }
 
 
   void
   MonolithicPreconditioner::vmult(FluidBlockVector &dst, const FluidBlockVector &src) const
   {
-    const MPI_Comm      communicator = stokes_.stokes().space().mesh.communicator();
-    const ShellUnknowns r            = shell_unknowns(src, communicator);
+    const ShellUnknowns r = shell_unknowns(src, stokes_.stokes().space().mesh.communicator());
     const ShellUnknowns z{-r.pressure_jump / volume_, r.force};
-
-    stokes_.apply_inverse_pressure_mass(dst.block(pressure_block), src.block(pressure_block));
-    dst.block(pressure_block) *= -1.;
-    for (unsigned int c = 0; c < 3; ++c)
-      dst.block(c) = src.block(c);
-    stokes_.stokes().add_pressure_gradient(dst, dst.block(pressure_block));
-    shell_.coupling().spread(z.force + z.pressure_jump * shell_.volume_gradient(), dst);
-    for (unsigned int c = 0; c < 3; ++c)
-      {
-        velocity_scratch_ = dst.block(c);
-        stokes_.apply_inverse_laplace(dst.block(c), velocity_scratch_);
-      }
+    for (unsigned int b = 0; b <= pressure_block; ++b)
+      loads_.block(b) = src.block(b);
+    shell_.coupling().spread(z.force + z.pressure_jump * shell_.volume_gradient(), loads_);
+    stokes_.vmult(dst, loads_);
     set_shell_unknowns(dst, z);
   }
 } // namespace tanktread

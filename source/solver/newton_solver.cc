@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: the nonlinear system of a time level.
 
+#include <deal.II/base/mpi.h>
+
 #include <tanktread/base/exceptions.h>
 #include <tanktread/solver/newton_solver.h>
 #include <tanktread/surface/surface_geometry.h>
 
+#include <algorithm>
 #include <cmath>
+#include <sstream>
 
 namespace tanktread
 {
@@ -90,7 +94,7 @@ namespace tanktread
   NewtonSolver::norm(const Residual &r, const LinearisedShell &shell) const
   {
     const double from_forces = std::sqrt(shell.displacement_of_force(r.force).squaredNorm() / r.x.rows()) / shell.tau();
-    return std::hypot(speed(r, shell.tau()), from_forces);
+    return dealii::Utilities::MPI::broadcast(fluid_->mesh().communicator(), std::hypot(speed(r, shell.tau()), from_forces), 0);
   }
 
 
@@ -99,8 +103,7 @@ namespace tanktread
   {
     FluidBlockVector flow;
     fluid_->space().reinit(flow);
-    for (unsigned int c = 0; c < 3; ++c)
-      fluid_->preconditioner().apply_inverse_laplace(flow.block(c), load.block(c));
+    fluid_->preconditioner().vmult(flow, load);
     const ControlPoints velocity = coupling_.interpolate(flow);
     return std::sqrt(velocity.squaredNorm() / velocity.rows());
   }
@@ -124,7 +127,6 @@ namespace tanktread
   NewtonSolver::linearised(const State &state, const PointDerivatives derivatives, const double tau)
   {
     const Timings::Scope scope(timings_, "Shell tangent and factorisation");
-    coupling_.move(state.x); // a rejected trial of the line search may have left it elsewhere
     VelocityGradients gradients = VelocityGradients::Zero(coupling_.surface().n_points(), 9);
     if (derivatives == PointDerivatives::complete)
       gradients = coupling_.velocity_gradients(state.fluid);
@@ -167,6 +169,11 @@ namespace tanktread
     increment.x                  = dx0 + shell.displacement(moments);
     increment.volume_shift       = shell.volume_shift(moments, r.x, increment.x);
     increment.force              = shell.force_change(unknowns.force, increment.x);
+    // All ranks have computed this alike up to rounding, which differs between kinds of processors: one answer for all, so that they take the same decisions.
+    const MPI_Comm communicator = fluid_->mesh().communicator();
+    MPI_Bcast(increment.x.data(), increment.x.size(), MPI_DOUBLE, 0, communicator);
+    MPI_Bcast(increment.force.data(), increment.force.size(), MPI_DOUBLE, 0, communicator);
+    MPI_Bcast(&increment.volume_shift, 1, MPI_DOUBLE, 0, communicator);
     return report;
   }
 
@@ -204,11 +211,13 @@ namespace tanktread
     try
       {
         Residual r      = residual(trial, xhat, tau);
-        double   length = tau * speed(r, tau); // about that of the next displacement
+        double   length = dealii::Utilities::MPI::broadcast(fluid_->mesh().communicator(), tau * speed(r, tau), 0); // about that of the next displacement
         for (bool solved = false; !solved;)
           {
             if (report.newton_iterations == parameters_.max_newton_iterations)
               throw NumericalError("no convergence in " + std::to_string(report.newton_iterations) + " Newton iterations");
+            if (!report.step_lengths.empty() && report.step_lengths.back() < 1.)
+              coupling_.move(trial.x); // where a rejected trial has left it
             const bool            near  = length < 0.25 * finest_cell();
             const LinearisedShell shell = linearised(trial, near ? PointDerivatives::complete : PointDerivatives::frozen, tau);
             if (report.residuals.empty())
@@ -236,19 +245,29 @@ namespace tanktread
   }
 
 
-  ControlPoints
-  NewtonSolver::solve_flow(State &state, unsigned int &linear_iterations)
+  unsigned int
+  NewtonSolver::solve_flow(State &state)
   {
     state.force = shell_.force(state.x);
     State              increment;
     const Residual     r      = residual(state, state.x, 0.);
-    const LinearReport report = linear_solve(r, linearised(state, PointDerivatives::frozen, 0.), 1e-2 * parameters_.newton_tolerance, increment);
-    linear_iterations         = report.iterations;
+    // Relative to the loads of the shell and of unit pressure, not to what the initial guess has left of them.
+    FluidBlockVector load;
+    fluid_->space().reinit(load);
+    coupling_.spread(state.force, load);
+    coupling_.spread(volume_gradient(surface_, state.x), load);
+    const double wanted = std::max(1e-10, 1e-2 * parameters_.newton_tolerance) * load.l2_norm(), given = std::hypot(r.fluid.l2_norm(), r.flux);
+    if (given <= wanted)
+      return 0;
+    const LinearReport report = linear_solve(r, linearised(state, PointDerivatives::frozen, 0.), wanted / given, increment);
     if (!report.converged)
-      throw NumericalError("The Stokes solver did not converge: residual " + std::to_string(report.final_residual) + " after " + std::to_string(report.iterations) +
-                           " iterations, from " + std::to_string(report.initial_residual) + '.');
-    increment.x.setZero();
+      {
+        std::ostringstream message;
+        message << "The Stokes solver did not converge: residual " << report.final_residual << " after " << report.iterations << " iterations, from "
+                << report.initial_residual << '.';
+        throw NumericalError(message.str());
+      }
     state = moved(state, increment, 1.);
-    return shell_velocity(state);
+    return report.iterations;
   }
 } // namespace tanktread

@@ -135,7 +135,8 @@ TEST(ConstantPressureJump, DrivesNoFlow)
   const MonolithicPreconditioner preconditioner(scene.fluid.preconditioner(), shell, scene.volume);
   const LinearReport             report = solve_fgmres(matrix, preconditioner, u, rhs, 1e-10, 300);
   ASSERT_TRUE(report.converged);
-  EXPECT_LT(largest_velocity(u), 1e-7);
+  const double largest = largest_velocity(u);
+  EXPECT_LT(largest, 1e-7);
   EXPECT_NEAR(shell_unknowns(u, MPI_COMM_WORLD).pressure_jump, -p0, 1e-6);
 
   // Without it the continuous pressure leaves a spurious flow.
@@ -144,9 +145,10 @@ TEST(ConstantPressureJump, DrivesNoFlow)
   scene.fluid.space().reinit(spurious);
   scene.coupling.spread(scene.state.force, load);
   ASSERT_TRUE(solve_fgmres(scene.fluid.stokes(), scene.fluid.preconditioner(), spurious, load, 1e-8, 300).converged);
-  EXPECT_GT(largest_velocity(spurious), 1e-3);
+  const double largest_spurious = largest_velocity(spurious);
+  EXPECT_GT(largest_spurious, 1e-3);
   if (is_root())
-    std::cout << "largest velocity " << largest_velocity(u) << " with, " << largest_velocity(spurious) << " without the indicator pressure" << std::endl;
+    std::cout << "largest velocity " << largest << " with, " << largest_spurious << " without the indicator pressure" << std::endl;
 }
 
 
@@ -155,8 +157,7 @@ TEST(MonolithicSystem, IsTheDerivativeOfTheResidual)
   // One Newton step with exact linear solves from a point displaced by epsilon leaves a residual of order epsilon^2.
   Scene scene({5., 0.2}, 1., ellipsoid(1.3, 1.1, 1.), tight(1e-8, 1e-8));
   const ControlPoints x0     = scene.state.x;
-  unsigned int        unused = 0;
-  scene.solver.solve_flow(scene.state, unused);
+  scene.solver.solve_flow(scene.state);
   ASSERT_TRUE(scene.solver.solve(scene.state, x0, 0.05).converged);
 
   SolverParameters one = scene.parameters;
@@ -182,14 +183,14 @@ TEST(MonolithicSystem, IsTheDerivativeOfTheResidual)
 TEST(Newton, ConvergesQuadratically)
 {
   Scene        scene({5., 0.2}, 1., {}, tight(1e-9, 1e-8));
-  unsigned int unused = 0;
-  scene.solver.solve_flow(scene.state, unused);
+  scene.solver.solve_flow(scene.state);
   for (unsigned int step = 0; step < 2; ++step)
     {
       const ControlPoints x_n    = scene.state.x;
       const NewtonReport  report = scene.solver.solve(scene.state, x_n, 0.1);
       print("step " + std::to_string(step), report);
       ASSERT_TRUE(report.converged);
+      ASSERT_GE(report.residuals.size(), 4u);
       for (unsigned int i = 1; i + 1 < report.residuals.size(); ++i)
         if (report.residuals[i + 1] > 1e-10)
           {
@@ -213,21 +214,17 @@ TEST(Newton, ReportsWhatItCannotSolve)
   EXPECT_FALSE(report.converged);
   EXPECT_NE(report.message.find("linear solver"), std::string::npos);
   EXPECT_EQ(scene.state.x, before.x);
-  unsigned int unused = 0;
-  EXPECT_THROW(hopeless.solve_flow(scene.state, unused), NumericalError);
+  EXPECT_THROW(hopeless.solve_flow(scene.state), NumericalError);
 }
 
 
 TEST(BackwardEuler, EnergyFallsWithoutFlow)
 {
-  // Neo-Hookean membrane and Helfrich bending (kappa_B = 1) about a flat reference: the ellipsoid relaxes. Steps from 0.005 to 5 mu a^3 / kappa_B; a rejected one is halved, as
-  // a run does it.
-  for (const double wanted : {0.005, 0.05, 0.5, 5.})
+  // Neo-Hookean membrane and Helfrich bending (kappa_B = 1) about a flat reference: the ellipsoid relaxes. Steps from 0.005 to 5 mu a^3 / kappa_B.
+  for (const double dt : {0.005, 0.05, 0.5, 5.})
     {
       Scene        scene({10., 1.}, 0., ellipsoid(1.4, 1.2, 1.), tight(1e-6, 1e-3));
-      unsigned int unused = 0, halved = 0;
-      scene.solver.solve_flow(scene.state, unused);
-      double       dt     = wanted;
+      scene.solver.solve_flow(scene.state);
       const auto   energy = [&]() {
         const Shell::Energy e = scene.shell.energy(scene.state.x);
         return e.membrane + e.bending;
@@ -236,12 +233,7 @@ TEST(BackwardEuler, EnergyFallsWithoutFlow)
       for (unsigned int step = 0; step < 4; ++step)
         {
           const ControlPoints x_n    = scene.state.x;
-          NewtonReport        report = scene.solver.solve(scene.state, x_n, dt);
-          for (; !report.converged && dt > 1e-3 * wanted; ++halved)
-            {
-              dt *= 0.5;
-              report = scene.solver.solve(scene.state, x_n, dt);
-            }
+          const NewtonReport  report = scene.solver.solve(scene.state, x_n, dt);
           ASSERT_TRUE(report.converged) << report.message;
           const double after = energy();
           EXPECT_LT(after, before) << "step " << step << " of length " << dt;
@@ -250,7 +242,6 @@ TEST(BackwardEuler, EnergyFallsWithoutFlow)
           before = after;
         }
       EXPECT_LT(std::abs(enclosed_volume(scene.surface, scene.state.x) / scene.volume - 1.), 1e-8);
-      EXPECT_EQ(halved, 0u) << "for a first step of " << wanted;
     }
 }
 

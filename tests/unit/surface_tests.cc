@@ -4,6 +4,7 @@
 #include <tanktread/base/exceptions.h>
 #include <tanktread/surface/capsule_shape.h>
 #include <tanktread/surface/contour.h>
+#include <tanktread/surface/interior.h>
 #include <tanktread/surface/subdivision_surface.h>
 #include <tanktread/surface/surface_geometry.h>
 #include <tanktread/surface/surface_operators.h>
@@ -839,3 +840,28 @@ namespace
     EXPECT_TRUE(shear_plane_contour(mesh).empty());
   }
 } // namespace
+
+TEST(Interior, AgreesWithTheEllipsoid)
+{
+  CapsuleShapeParameters parameters;
+  parameters.shape                = Shape::ellipsoid;
+  parameters.axes                 = {{2., 1.5, 1.}};
+  const FittedShape        shape  = make_capsule(parameters, 3);
+  const SubdivisionSurface surface(shape.topology, triangle_quadrature(3), Derivatives::first);
+  const Interior           interior(surface, shape.control_points);
+  const double             scale = std::cbrt(1. / 3.);
+  const ControlPoints      points = random_field(4000, 1.6, 5);
+  unsigned int             inside = 0, checked = 0;
+  for (Eigen::Index i = 0; i < points.rows(); ++i)
+    {
+      const Vector3d y     = points.row(i);
+      const double   level = y.cwiseQuotient(scale * Vector3d(2., 1.5, 1.)).norm();
+      if (std::abs(level - 1.) < 2e-3)
+        continue;
+      ++checked;
+      inside += level < 1.;
+      EXPECT_EQ(interior.contains(y), level < 1.) << y.transpose() << ", level " << level;
+    }
+  EXPECT_GT(checked, 3900u);
+  EXPECT_GT(inside, 400u);
+}

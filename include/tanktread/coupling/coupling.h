@@ -103,7 +103,7 @@ namespace tanktread
 
   /**
    * Points per face (as subdivisions of a triangle rule with `points_per_face` points) that bring the points of the surface x closer than half a cell of size h:
-   * the smallest n for which the largest area of a point is below (h/2)^2.
+   * the smallest n for which the largest area of a point, estimated as 4^-n of that of the undivided rule, is below (h/2)^2.
    */
   unsigned int
   coupling_subdivisions(const TriangleMesh &topology, const ControlPoints &x, unsigned int points_per_face, double h);

@@ -53,9 +53,19 @@ namespace tanktread
     bool
     covers(const std::vector<dealii::Point<3>> &points) const;
 
-    /** Key of the cell of level `level` that contains the point, wrapped into the box in x and y. */
-    CellKey
-    key(const dealii::Point<3> &point, unsigned int level) const;
+    /** A cube of some level and a point's position in it, in [0, 1)^3. */
+    struct Place
+    {
+      CellKey          key;
+      dealii::Point<3> unit;
+    };
+
+    /**
+     * The cube of level `level` that contains the point, wrapped into the box in x and y. Cube and position come from one rounding, so a point at a face is at the lower end of
+     * the upper cube or (nearly) at the upper end of the lower one, never one cube away. Throws NumericalError if the point is not between the walls or not a number.
+     */
+    Place
+    place(const dealii::Point<3> &point, unsigned int level) const;
 
     /** Key of an existing cell. */
     CellKey

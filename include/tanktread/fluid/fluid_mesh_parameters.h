@@ -11,12 +11,20 @@ namespace dealii
 
 namespace tanktread
 {
+  /** Pressure functions of the Taylor-Hood pair besides the indicator of the capsule's interior. */
+  enum class PressureSpace
+  {
+    q1
+  };
+
   /** Section "Fluid mesh". Lengths in a. */
   struct FluidMeshParameters
   {
     double finest_cell   = 0.15625;
     double coarsest_cell = 2.5;
     double band_width    = 1.5;
+
+    PressureSpace pressure_space = PressureSpace::q1;
 
     /** Declares section "Fluid mesh" in `prm`; parsing fills this object, which has to outlive `prm`. */
     void

@@ -12,7 +12,7 @@ namespace tanktread
   /** Coefficients of one scalar field, distributed over the ranks. */
   using FluidVector = dealii::LinearAlgebra::distributed::Vector<double>;
 
-  /** Blocks 0, 1, 2: velocity components (one scalar Q2 field each); block 3: Q1 pressure; the monolithic system appends block 4, see MonolithicSystem. */
+  /** Blocks 0, 1, 2: velocity components (one scalar Q2 field each); block 3: Q1 pressure; the monolithic system appends block 4, see monolithic_system.h. */
   using FluidBlockVector = dealii::LinearAlgebra::distributed::BlockVector<double>;
 
   /** Number of the pressure block, which follows the three velocity components. */

@@ -12,6 +12,7 @@
 #include <tanktread/surface/surface_geometry.h>
 #include <tanktread/surface/triangle_mesh.h>
 
+#include <memory>
 #include <string>
 
 namespace tanktread
@@ -21,6 +22,7 @@ namespace tanktread
   {
     double           time = 0.;
     InertiaEllipsoid ellipsoid{};
+    double           theta_over_pi = 0.; // inclination in units of pi; not a number while the section is round
     double           volume = 0., volume_error = 0., area = 0.;
     Shell::Energy    energy{};
     double           dissipation   = 0.; // mu times the integral of |grad u|^2, u the disturbance velocity
@@ -45,19 +47,19 @@ namespace tanktread
   observe(const ShellView &shell, const Fluid &fluid, const State &state);
 
   /**
-   * history.csv (one row a step), contours.csv (the cut with the plane y = 0 at each field output: time, x, z), shell_NNNN.vtu and fluid_NNNN.pvtu with shell.pvd and
+   * history.csv (one row a step), contours.csv (the cut with the plane y = 0 at each field output: time, x, z), shell_NNNN.vtu and fluid_NNNNN.pvtu with shell.pvd and
    * fluid.pvd. The first rank writes all but the pieces of the fluid.
    */
   class Results
   {
   public:
-    /** The folder must exist. Throws InputError if it cannot be written. */
-    Results(const std::string &folder, bool first_rank);
+    /** The folder must exist. What cannot be written on the first rank throws InputError on all. Collective, as are all members. */
+    Results(const std::string &folder, MPI_Comm communicator);
 
     void
     add_history(const Observables &observables);
 
-    /** Writes shell, contour and fluid. `velocity`: of the control points, NP x 3. Collective. */
+    /** Writes shell, contour and fluid. `velocity`: of the control points, NP x 3. */
     void
     add_fields(double time, const ShellView &shell, const ControlPoints &velocity, const Fluid &fluid, const State &state, double shear_rate);
 
@@ -69,13 +71,13 @@ namespace tanktread
     void
     write_shell(const std::string &file, const ShellView &shell, const State &state, const ControlPoints &velocity) const;
     void
-    add_contour(double time, const TriangleMesh &limit_surface);
+    add_contour(double time, const TriangleMesh &topology, const ControlPoints &x);
 
-    std::string  folder_;
-    bool         first_rank_;
-    unsigned int n_fields_ = 0;
-    CsvWriter    history_, contours_;
-    PvdFile      shell_series_, fluid_series_;
+    std::string                folder_;
+    MPI_Comm                   communicator_;
+    unsigned int               n_fields_ = 0;
+    std::unique_ptr<CsvWriter> history_, contours_; // on the first rank only
+    PvdFile                    shell_series_, fluid_series_;
   };
 } // namespace tanktread
 

@@ -18,10 +18,10 @@ namespace tanktread
   class Simulation
   {
   public:
-    /** Everything that can be wrong about the input has been checked by `parameters.check()`; the output folder is made here. `revision`: program and version for the log. */
+    /** Everything that can be wrong about the input has been checked by `parameters.check()`; nothing is written before run(). */
     Simulation(const Parameters &parameters, MPI_Comm communicator);
 
-    /** Runs to the end time or the steady state. Throws NumericalError, after writing the last good state, when a step cannot be done. */
+    /** Makes the output folder and runs to the end time or the steady state. Throws NumericalError, after writing the last good state, when a step cannot be done. */
     void
     run();
 
@@ -35,23 +35,32 @@ namespace tanktread
     };
 
     void
+    make_folder();
+    void
     start();
+    void
+    advance();
+    /** New mesh around the present shell, with a zero flow. */
     void
     refine_around_shell();
     StepResult
     implicit_step();
+    /** One attempt at a step; moves the state if it converges and logs it if not. */
+    NewtonReport
+    try_step(double length, bool from_extrapolation);
     StepResult
     explicit_step();
     State
     extrapolated(double length) const;
     void
-    check_explicit_step(const ControlPoints &displacement) const;
+    check_explicit_step(const ControlPoints &displacement, double length) const;
     bool
-    is_steady(const InertiaEllipsoid &before, const InertiaEllipsoid &after, double length) const;
+    is_steady(const InertiaEllipsoid &before, const InertiaEllipsoid &after, double length);
+    /** Whether something that happens at multiples of `interval` (0: always) is due; moves `next` to the next time. */
+    bool
+    is_due(double &next, double interval) const;
     void
     record(const StepResult &step, bool last);
-    ControlPoints
-    shell_velocity() const;
 
     const Parameters                   &parameters_;
     MPI_Comm                            communicator_;
@@ -61,17 +70,17 @@ namespace tanktread
     FittedShape                         shape_;
     SubdivisionSurface                  surface_;
     Shell                               shell_;
+    Fluid                               fluid_;
     SubdivisionSurface                  coupling_surface_;
     Coupling                            coupling_;
     ShellView                           view_;
     UndisturbedFlow                     flow_;
-    Fluid                               fluid_;
     NewtonSolver                        solver_;
     State                               state_;
     double                              time_        = 0.;
     double                              next_length_;
-    unsigned int                        n_steps_     = 0;
-    double                              next_fields_ = 0., next_history_ = 0.;
+    unsigned int                        n_steps_ = 0, n_quiet_steps_ = 0, remeshing_iterations_ = 0;
+    double                              next_fields_, next_history_ = 0.;
     ControlPoints                       previous_x_;          // of the step before, empty at the start
     std::unique_ptr<State>              previous_state_;      // none right after a change of mesh
     double                              previous_length_ = 0.;

@@ -39,7 +39,7 @@ namespace tanktread
   };
 
   /**
-   * The shell's rows of the Newton system about (x, F, u, pi) for a time step of effective length tau, v = dV/dx, H_V = d2V/dx2 (eqs. of doc/theory.md, section 6):
+   * The shell's rows of the Newton system about (x, F, u, pi, sigma) for a time step of effective length tau, v = dV/dx, H_V = d2V/dx2 (doc/theory.md, section 6):
    *
    *     (M - tau Gamma - sigma H_V) dx = tau S^T W Phi du + dsigma v - M r_x,   v . dx = -r_V,   Gamma = S^T W grad u S
    *     dG + (K - pi H_V) dx = -r_F,                                            dG = dF + pi H_V dx: change of F + pi v at fixed pi

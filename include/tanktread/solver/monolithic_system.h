@@ -7,8 +7,6 @@
 #include <tanktread/fluid/fluid.h>
 #include <tanktread/solver/linearised_shell.h>
 
-#include <memory>
-
 namespace tanktread
 {
   /** Block of the monolithic vectors that holds dpi (entry 0) and the nodal forces dG (entry 1 + 3 I + c); rank 0 owns all of it. */
@@ -74,7 +72,7 @@ namespace tanktread
     const StokesPreconditioner &stokes_;
     const LinearisedShell      &shell_;
     double                      volume_;
-    mutable FluidVector         velocity_scratch_;
+    mutable FluidBlockVector    loads_;
   };
 } // namespace tanktread
 

@@ -30,7 +30,7 @@ namespace tanktread
   struct Residual
   {
     FluidBlockVector fluid;        // A u - B^T p - R(F + pi v), -B u
-    double           shell_speed;  // root mean square of J A^{-1} r_u: about how fast the missing forces would move the shell
+    double           shell_speed;  // root mean square of J P^{-1} (r_u, r_p), P the Stokes preconditioner: about how fast the missing forces would move the shell
     ControlPoints    x;            // x - xhat - tau (J u + undisturbed flow) - sigma m
     ControlPoints    force;        // F - f(x)
     double           flux;         // v . (J u + u_inf)
@@ -46,7 +46,7 @@ namespace tanktread
    * xhat and tau carry the time scheme: x_n and dt for backward Euler. The pressure jump pi lets no volume through the shell at the new time level; what a finite step
    * along such a velocity still changes of the volume is an error of the time scheme, which the uniform normal displacement sigma m takes away. (To ask
    * the fluid for that volume instead would drive flow through the shell against incompressibility, with a pressure jump that grows like dt/h.) All parts of a residual are measured as velocities of the shell, in a per unit of
-   * time: |J A^{-1} r_u| with a multigrid V-cycle for A^{-1}, |r_x| / tau, |(Z + tau K)^{-1} r_F|, r_pi / (3 V0) and r_V / (3 V0 tau), the first three as root mean squares over the
+   * time: that of J P^{-1} (r_u, r_p) with the Stokes preconditioner P, |r_x| / tau, |(Z + tau (K - pi H_V))^{-1} r_F|, r_pi / (3 V0) and r_V / (3 V0 tau), the first three as root mean squares over the
    * control points. (The Euclidean norm of the load vector r_u would not do: moving the shell within a cell redistributes loads among the
    * nodes, which changes the vector much and the flow little.)
    */
@@ -61,16 +61,23 @@ namespace tanktread
     attach(const Fluid &fluid);
 
     /**
-     * Iterations whose displacement |r| tau is longer than a quarter of a cell freeze the points, the others use the complete derivative and converge quadratically.
-     *
      * Advances `state`, which holds the initial guess, to the solution. If the report says that it did not converge, `state` is as it was. Collective.
+     *
+     * Iterations whose displacement |r| tau is longer than a quarter of a cell freeze the points, the others use the complete derivative and converge quadratically.
      */
     NewtonReport
     solve(State &state, const ControlPoints &xhat, double tau);
 
-    /** The flow at fixed shell `state.x`: u, p and pi such that no volume flows through the shell. Returns the velocity of the control points. Throws NumericalError if it fails. */
+    /**
+     * The flow at fixed shell `state.x` and forces F = f(x): u, p and pi such that no volume flows through the shell. Returns the linear iterations. Throws
+     * NumericalError if it fails. Collective.
+     */
+    unsigned int
+    solve_flow(State &state);
+
+    /** Velocity of the control points, J u + u_inf; the coupling's points must be at state.x, as they are after a solve. Collective. */
     ControlPoints
-    solve_flow(State &state, unsigned int &linear_iterations);
+    shell_velocity(const State &state) const;
 
   private:
     Residual
@@ -80,9 +87,6 @@ namespace tanktread
     speed(const Residual &r, double tau) const;
     double
     norm(const Residual &r, const LinearisedShell &shell) const;
-    /** Velocity of the control points, J u + u_inf; the coupling's points must be at state.x. */
-    ControlPoints
-    shell_velocity(const State &state) const;
     double
     shell_speed(const FluidBlockVector &load) const;
     bool
