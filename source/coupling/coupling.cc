@@ -108,9 +108,9 @@ namespace tanktread
   void
   Coupling::spread_with_motion(const ControlPoints &f, const ControlPoints &dx, const ControlPoints &g, FluidBlockVector &load) const
   {
-    const ControlPoints forces     = weights_.asDiagonal() * (surface_.S() * density(f));
-    const ControlPoints density    = weights_.asDiagonal() * (surface_.S() * g);
-    const ControlPoints motion     = surface_.S() * dx;
+    const ControlPoints forces  = weights_.asDiagonal() * (surface_.S() * density(f));
+    const ControlPoints density = weights_.asDiagonal() * (surface_.S() * g);
+    const ControlPoints motion  = surface_.S() * dx;
     std::vector<double> moments(9 * surface_.n_points());
     for (unsigned int q = 0; q < surface_.n_points(); ++q)
       for (unsigned int c = 0; c < 3; ++c)
@@ -136,9 +136,9 @@ namespace tanktread
             for (unsigned int i = 0; i < n; ++i)
               for (unsigned int j = 0; j < n; ++j)
                 {
-                  const double weight = weights_[q] * N[i] * N[j];
-                  const int    length = pattern.row_length(support[i]);
-                  double *const entry = values + 9 * pattern.row_start(support[i]) + 3 * places[i * n + j];
+                  const double  weight = weights_[q] * N[i] * N[j];
+                  const int     length = pattern.row_length(support[i]);
+                  double *const entry  = values + 9 * pattern.row_start(support[i]) + 3 * places[i * n + j];
                   for (unsigned int c = 0; c < 3; ++c)
                     for (unsigned int d = 0; d < 3; ++d)
                       entry[3 * c * length + d] += weight * gradients(q, 3 * c + d);

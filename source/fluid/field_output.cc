@@ -30,7 +30,7 @@ namespace tanktread
                 dealii::DoFHandler<3>::active_cell_iterator(&space.mesh.triangulation(), cell->level(), cell->index(), &vector_dofs)->get_dof_indices(vector);
                 for (unsigned int a = 0; a < 27; ++a)
                   {
-                    const auto i = vector[fe.component_to_system_index(c, a)];
+                    const auto   i = vector[fe.component_to_system_index(c, a)];
                     const double z = cell->vertex(0)[2] + space.mesh.cell_size(cell->level()) * space.velocity.dofs().get_fe().unit_support_point(a)[2];
                     if (result.locally_owned_elements().is_element(i))
                       result(i) = component(scalar[a]) + (c == 0 ? shear_rate * z : 0.);
@@ -64,19 +64,19 @@ namespace tanktread
 
 
   std::string
-  write_fluid_fields(const std::string      &folder,
-                     const std::string      &name,
-                     const unsigned int      counter,
-                     const TaylorHoodSpace  &space,
-                     const FluidBlockVector &fields,
-                     const double            shear_rate,
+  write_fluid_fields(const std::string                                     &folder,
+                     const std::string                                     &name,
+                     const unsigned int                                     counter,
+                     const TaylorHoodSpace                                 &space,
+                     const FluidBlockVector                                &fields,
+                     const double                                           shear_rate,
                      const std::function<double(const dealii::Point<3> &)> &further_pressure)
   {
     const dealii::FESystem<3> fe(space.velocity.dofs().get_fe(), 3);
     dealii::DoFHandler<3>     vector_dofs(space.mesh.triangulation());
     vector_dofs.distribute_dofs(fe);
-    const FluidVector velocity = total_velocity(space, fields, shear_rate, vector_dofs);
-    const FluidVector pressure = total_pressure(space, fields, further_pressure);
+    const FluidVector     velocity = total_velocity(space, fields, shear_rate, vector_dofs);
+    const FluidVector     pressure = total_pressure(space, fields, further_pressure);
     dealii::Vector<float> rank(space.mesh.triangulation().n_active_cells());
     rank = space.mesh.triangulation().locally_owned_subdomain();
 

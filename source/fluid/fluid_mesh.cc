@@ -58,8 +58,8 @@ namespace tanktread
       {
         const double scaled = (point[d] / side_ + 0.5) * n;
         if (!(std::abs(scaled) < 1e9) || (d == 2 && !(scaled >= 0. && scaled < n)))
-          throw NumericalError("The shell has left the fluid: coordinate " + std::to_string(point[d]) + " along axis " + std::to_string(d) + ", walls at z = +-" +
-                               std::to_string(0.5 * side_) + '.');
+          throw NumericalError("The shell has left the fluid: coordinate " + std::to_string(point[d]) + " along axis " + std::to_string(d) +
+                               ", walls at z = +-" + std::to_string(0.5 * side_) + '.');
         const int i            = static_cast<int>(std::floor(scaled));
         result.key.position[d] = ((i % n) + n) % n;
         result.unit[d]         = scaled - i;
@@ -78,9 +78,9 @@ namespace tanktread
   FluidMesh::KeySet
   FluidMesh::wanted_cells(const std::vector<dealii::Point<3>> &points, const double band) const
   {
-    const int    n = n_coarse_ << finest_level_;
-    KeySet       result;
-    const auto   insert_with_ancestors = [&](CellKey cell) {
+    const int  n = n_coarse_ << finest_level_;
+    KeySet     result;
+    const auto insert_with_ancestors = [&](CellKey cell) {
       while (result.insert(cell.packed()).second && cell.level > 0)
         {
           --cell.level;

@@ -16,10 +16,17 @@ namespace tanktread
   {
     using dealii::Patterns::Double;
     prm.enter_subsection("Fluid mesh");
-    prm.add_parameter("Finest cell", finest_cell, "Side of the cells at the shell, in a; the mesh takes the next smaller side its octree has.", Double(1e-4, 10.));
+    prm.add_parameter("Finest cell",
+                      finest_cell,
+                      "Side of the cells at the shell, in a; the mesh takes the next smaller side its octree has.",
+                      Double(1e-4, 10.));
     prm.add_parameter("Coarsest cell", coarsest_cell, "Side of the cells away from the shell, in a; adjusted to divide the box.", Double(1e-4, 100.));
     prm.add_parameter("Band width", band_width, "Distance from the shell within which cells are finest ones, in finest cells.", Double(1., 20.));
-    add_enum_parameter(prm, "Pressure space", pressure_space, {{"Q1", PressureSpace::q1}}, "Q1: continuous trilinear functions and the indicator of the capsule's interior.");
+    add_enum_parameter(prm,
+                       "Pressure space",
+                       pressure_space,
+                       {{"Q1", PressureSpace::q1}},
+                       "Q1: continuous trilinear functions and the indicator of the capsule's interior.");
     prm.leave_subsection();
   }
 
@@ -31,7 +38,8 @@ namespace tanktread
     if (coarsest_cell > 0.5 * box_side)
       message << "Fluid mesh/Coarsest cell is " << coarsest_cell << "; allowed: at most half of Scene/Box side, " << 0.5 * box_side << '.';
     else if (coarsest_cell < box_side / 64.)
-      message << "Fluid mesh/Coarsest cell is " << coarsest_cell << "; allowed: at least 1/64 of Scene/Box side, " << box_side / 64. << " (only the neighbourhood of the shell needs small cells).";
+      message << "Fluid mesh/Coarsest cell is " << coarsest_cell << "; allowed: at least 1/64 of Scene/Box side, " << box_side / 64.
+              << " (only the neighbourhood of the shell needs small cells).";
     else if (finest_cell > coarsest_cell)
       message << "Fluid mesh/Finest cell is " << finest_cell << "; allowed: at most Fluid mesh/Coarsest cell, " << coarsest_cell << '.';
     else if (box_side / finest_cell > 1 << 18)

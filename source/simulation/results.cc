@@ -47,8 +47,9 @@ namespace tanktread
   observe(const ShellView &shell, const Fluid &fluid, const State &state)
   {
     Observables result;
-    result.ellipsoid     = inertia_ellipsoid(shell.surface, state.x);
-    result.theta_over_pi = result.ellipsoid.taylor_parameter < 1e-4 ? std::numeric_limits<double>::quiet_NaN() : result.ellipsoid.inclination / dealii::numbers::PI;
+    result.ellipsoid = inertia_ellipsoid(shell.surface, state.x);
+    result.theta_over_pi =
+      result.ellipsoid.taylor_parameter < 1e-4 ? std::numeric_limits<double>::quiet_NaN() : result.ellipsoid.inclination / dealii::numbers::PI;
     result.volume        = enclosed_volume(shell.surface, state.x);
     result.volume_error  = result.volume / shell.initial_volume - 1.;
     result.area          = surface_area(shell.surface, state.x);
@@ -106,10 +107,10 @@ namespace tanktread
   void
   Results::write_shell(const std::string &file, const ShellView &shell, const State &state, const ControlPoints &velocity) const
   {
-    const SparseMatrix    limit   = vertex_limit_stencils(shell.topology);
-    const Eigen::VectorXd weights = area_weights(shell.surface, state.x);
-    const Eigen::VectorXd stretch = weights.cwiseQuotient(shell.shell.reference_weights());
-    const ControlPoints   f       = shell.shell.force(state.x);
+    const SparseMatrix                                       limit   = vertex_limit_stencils(shell.topology);
+    const Eigen::VectorXd                                    weights = area_weights(shell.surface, state.x);
+    const Eigen::VectorXd                                    stretch = weights.cwiseQuotient(shell.shell.reference_weights());
+    const ControlPoints                                      f       = shell.shell.force(state.x);
     const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> mass(mass_matrix(shell.surface, weights));
 
     // Control values of the surface field nearest, in the mean square, to values at the quadrature points.

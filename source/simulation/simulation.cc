@@ -63,9 +63,10 @@ namespace tanktread
     , surface_(shape_.topology, triangle_quadrature(parameters.shell_mesh.quadrature), derivatives_needed(parameters))
     , shell_(surface_, parameters.shell, {parameters.scene.surface_young_modulus(), parameters.scene.bending_modulus()}, shape_.control_points)
     , fluid_(communicator, parameters.scene.box_side, parameters.fluid_mesh)
-    , coupling_surface_(shape_.topology,
-                        triangle_quadrature(3, coupling_subdivisions(shape_.topology, shape_.control_points, 3, fluid_.mesh().cell_size(fluid_.mesh().finest_level()))),
-                        Derivatives::first)
+    , coupling_surface_(
+        shape_.topology,
+        triangle_quadrature(3, coupling_subdivisions(shape_.topology, shape_.control_points, 3, fluid_.mesh().cell_size(fluid_.mesh().finest_level()))),
+        Derivatives::first)
     , coupling_(coupling_surface_, area_weights(coupling_surface_, shape_.control_points))
     , view_{shape_.topology, surface_, shell_, enclosed_volume(surface_, shape_.control_points)}
     , flow_{parameters.scene.flow == Flow::shear ? 1. : 0.}
@@ -73,7 +74,7 @@ namespace tanktread
     , next_length_(parameters.time.step)
     , next_fields_(parameters.output.field_interval)
   {
-    state_.x                       = shape_.control_points;
+    state_.x                        = shape_.control_points;
     const Eigen::RowVector3d extent = 2. * state_.x.cwiseAbs().colwise().maxCoeff();
     if (extent.maxCoeff() >= parameters.scene.box_side)
       {
@@ -149,9 +150,9 @@ namespace tanktread
   NewtonReport
   Simulation::try_step(const double length, const bool from_extrapolation)
   {
-    const bool         bdf2  = parameters_.time.scheme == TimeScheme::bdf2 && previous_x_.size() > 0;
-    const ImplicitStep step  = bdf2 ? bdf2_step(state_.x, previous_x_, length, previous_length_) : backward_euler_step(state_.x, length);
-    State              guess = from_extrapolation ? extrapolated(length) : state_;
+    const bool         bdf2   = parameters_.time.scheme == TimeScheme::bdf2 && previous_x_.size() > 0;
+    const ImplicitStep step   = bdf2 ? bdf2_step(state_.x, previous_x_, length, previous_length_) : backward_euler_step(state_.x, length);
+    State              guess  = from_extrapolation ? extrapolated(length) : state_;
     const NewtonReport report = solver_.solve(guess, step.xhat, step.tau);
     if (report.converged)
       {
@@ -163,7 +164,8 @@ namespace tanktread
     else
       {
         std::ostringstream text;
-        text << "Step of length " << length << " failed from the " << (from_extrapolation ? "extrapolated" : "last") << " state: " << report.message << " (residuals";
+        text << "Step of length " << length << " failed from the " << (from_extrapolation ? "extrapolated" : "last") << " state: " << report.message
+             << " (residuals";
         for (const double residual : report.residuals)
           text << ' ' << residual;
         log_.line(text.str() + ").");
@@ -202,8 +204,8 @@ namespace tanktread
     if (!(largest < 1.))
       {
         std::ostringstream message;
-        message << "The explicit coupling is unstable at this step: a control point would move by " << largest
-                << " a in one step of " << length << ". Take a smaller Time/Step or Solver/Coupling = implicit.";
+        message << "The explicit coupling is unstable at this step: a control point would move by " << largest << " a in one step of " << length
+                << ". Take a smaller Time/Step or Solver/Coupling = implicit.";
         throw NumericalError(message.str());
       }
   }
@@ -224,7 +226,8 @@ namespace tanktread
       }
     catch (const NumericalError &error)
       {
-        throw NumericalError(std::string("The explicit coupling failed at this step: ") + error.what() + " Take a smaller Time/Step or Solver/Coupling = implicit.");
+        throw NumericalError(std::string("The explicit coupling failed at this step: ") + error.what() +
+                             " Take a smaller Time/Step or Solver/Coupling = implicit.");
       }
     state_ = std::move(next);
     return result;
@@ -271,15 +274,8 @@ namespace tanktread
     if (first || last || (fields_wanted && is_due(next_fields_, parameters_.output.field_interval)))
       results_->add_fields(time_, view_, solver_.shell_velocity(state_), fluid_, state_, flow_.shear_rate);
     const double remaining = n_steps_ == 0 ? -1. : o.wall_time * (parameters_.scene.end_time - time_) / time_;
-    log_.step({n_steps_,
-               time_,
-               step.length,
-               step.newton_iterations,
-               step.linear_iterations,
-               o.ellipsoid.taylor_parameter,
-               o.theta_over_pi,
-               o.volume_error,
-               remaining});
+    log_.step(
+      {n_steps_, time_, step.length, step.newton_iterations, step.linear_iterations, o.ellipsoid.taylor_parameter, o.theta_over_pi, o.volume_error, remaining});
   }
 
 

@@ -103,7 +103,6 @@ namespace tanktread
   } // namespace
 
 
-
   void
   write_surface_vtu(const std::string                                          &file,
                     const ControlPoints                                        &positions,
@@ -128,11 +127,9 @@ namespace tanktread
   }
 
 
-
   PvdFile::PvdFile(std::string file)
     : file(std::move(file))
   {}
-
 
 
   void

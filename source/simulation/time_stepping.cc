@@ -16,7 +16,10 @@ namespace tanktread
                        scheme,
                        {{"BDF2", TimeScheme::bdf2}, {"backward Euler", TimeScheme::backward_euler}},
                        "BDF2: second order, variable steps, first step backward Euler; backward Euler: first order.");
-    prm.add_parameter("Step", step, "Length of a time step, in the scene's unit of time. A rejected step is tried with half its length and grows back.", Double(1e-8, 1e3));
+    prm.add_parameter("Step",
+                      step,
+                      "Length of a time step, in the scene's unit of time. A rejected step is tried with half its length and grows back.",
+                      Double(1e-8, 1e3));
     prm.add_parameter("Steady tolerance",
                       steady_tolerance,
                       "The run ends when semi-axes (in a) and inclination (in radians) change slower than this per unit of time; 0: at the end time only.",

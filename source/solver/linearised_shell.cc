@@ -68,7 +68,7 @@ namespace tanktread
       return;
     const SparseMatrix volume_hessian = tanktread::volume_hessian(surface, state.x);
     const SparseMatrix gamma          = coupling.gradient_matrix(velocity_gradient);
-    flux_gradient_ = nodal(gamma.transpose() * flat(normal_field_) + volume_hessian * flat(velocity));
+    flux_gradient_                    = nodal(gamma.transpose() * flat(normal_field_) + volume_hessian * flat(velocity));
 
     ControlPoints force;
     shell.force_and_tangent(state.x, force, stiffness_);

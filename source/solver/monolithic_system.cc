@@ -48,7 +48,7 @@ namespace tanktread
   void
   MonolithicOperator::vmult(FluidBlockVector &dst, const FluidBlockVector &src) const
   {
-    const auto         &coupling = shell_.coupling();
+    const auto         &coupling     = shell_.coupling();
     const MPI_Comm      communicator = stokes_.space().mesh.communicator();
     const ShellUnknowns unknowns     = shell_unknowns(src, communicator);
     const ControlPoints moments      = coupling.velocity_moments(src);

@@ -127,7 +127,7 @@ namespace tanktread
   NewtonSolver::linearised(const State &state, const PointDerivatives derivatives, const double tau)
   {
     const Timings::Scope scope(timings_, "Shell tangent and factorisation");
-    VelocityGradients gradients = VelocityGradients::Zero(coupling_.surface().n_points(), 9);
+    VelocityGradients    gradients = VelocityGradients::Zero(coupling_.surface().n_points(), 9);
     if (derivatives == PointDerivatives::complete)
       gradients = coupling_.velocity_gradients(state.fluid);
     gradients.col(2).array() += flow_.shear_rate; // du_x/dz
@@ -249,8 +249,8 @@ namespace tanktread
   NewtonSolver::solve_flow(State &state)
   {
     state.force = shell_.force(state.x);
-    State              increment;
-    const Residual     r      = residual(state, state.x, 0.);
+    State          increment;
+    const Residual r = residual(state, state.x, 0.);
     // Relative to the loads of the shell and of unit pressure, not to what the initial guess has left of them.
     FluidBlockVector load;
     fluid_->space().reinit(load);

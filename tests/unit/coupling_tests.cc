@@ -91,11 +91,11 @@ TEST(Coupling, SpreadingConservesTotalForce)
 
 TEST(Coupling, MotionOfPointsIsTheDerivative)
 {
-  Scene               s;
+  Scene                                  s;
   std::mt19937                           same_everywhere(11);
   std::uniform_real_distribution<double> uniform(-1., 1.);
-  const ControlPoints                    dx = ControlPoints::NullaryExpr(s.x.rows(), 3, [&]() { return uniform(same_everywhere); });
-  const auto          power_at = [&](const ControlPoints &x) {
+  const ControlPoints                    dx       = ControlPoints::NullaryExpr(s.x.rows(), 3, [&]() { return uniform(same_everywhere); });
+  const auto                             power_at = [&](const ControlPoints &x) {
     s.coupling.move(x);
     return s.f.cwiseProduct(s.coupling.interpolate(s.u)).sum();
   };
@@ -109,8 +109,8 @@ TEST(Coupling, MotionOfPointsIsTheDerivative)
   const double scale = std::abs(expected) + 1.;
   EXPECT_NEAR(load * s.u, expected, 1e-5 * scale);
 
-  const SparseMatrix  gamma = s.coupling.gradient_matrix(s.coupling.velocity_gradients(s.u));
-  const ControlPoints g     = s.coupling.density(s.f);
+  const SparseMatrix    gamma    = s.coupling.gradient_matrix(s.coupling.velocity_gradients(s.u));
+  const ControlPoints   g        = s.coupling.density(s.f);
   const Eigen::VectorXd gamma_dx = gamma * Eigen::Map<const Eigen::VectorXd>(dx.data(), dx.size());
   EXPECT_NEAR(Eigen::Map<const Eigen::VectorXd>(g.data(), g.size()).dot(gamma_dx), expected, 1e-5 * scale);
 }
@@ -139,9 +139,9 @@ TEST(Coupling, InterpolatesLinearVelocitiesExactly)
 
 TEST(Coupling, QuadratureFollowsTheFluidCell)
 {
-  const FittedShape  shape    = make_capsule({}, 2);
-  const unsigned int coarse   = coupling_subdivisions(shape.topology, shape.control_points, 3, 0.5);
-  const unsigned int fine     = coupling_subdivisions(shape.topology, shape.control_points, 3, 0.0625);
+  const FittedShape  shape  = make_capsule({}, 2);
+  const unsigned int coarse = coupling_subdivisions(shape.topology, shape.control_points, 3, 0.5);
+  const unsigned int fine   = coupling_subdivisions(shape.topology, shape.control_points, 3, 0.0625);
   EXPECT_EQ(coarse, 0u);
   const SubdivisionSurface surface(shape.topology, triangle_quadrature(3, fine), Derivatives::first);
   EXPECT_LE(std::sqrt(area_weights(surface, shape.control_points).maxCoeff()), 0.52 * 0.0625);

@@ -50,8 +50,8 @@ namespace
     velocity(const Point &x)
     {
       return {{-q * std::cos(k * x[0]) * std::cos(k * x[1]) * std::cos(q * x[2]),
-              std::sin(k * x[0]) * std::cos(q * x[2]),
-              -k * std::sin(k * x[0]) * std::cos(k * x[1]) * std::sin(q * x[2])}};
+               std::sin(k * x[0]) * std::cos(q * x[2]),
+               -k * std::sin(k * x[0]) * std::cos(k * x[1]) * std::sin(q * x[2])}};
     }
     static double
     pressure(const Point &x)
@@ -64,8 +64,8 @@ namespace
       const auto   u  = velocity(x);
       const double l2 = 2. * k * k + q * q;
       return {{l2 * u[0] + k * std::cos(k * x[0]) * std::cos(k * x[1]) * x[2] * x[2],
-              (k * k + q * q) * u[1] - k * std::sin(k * x[0]) * std::sin(k * x[1]) * x[2] * x[2],
-              l2 * u[2] + 2. * std::sin(k * x[0]) * std::cos(k * x[1]) * x[2]}};
+               (k * k + q * q) * u[1] - k * std::sin(k * x[0]) * std::sin(k * x[1]) * x[2] * x[2],
+               l2 * u[2] + 2. * std::sin(k * x[0]) * std::cos(k * x[1]) * x[2]}};
     }
   };
 
@@ -127,7 +127,7 @@ namespace
   {
     FluidBlockVector lift;
     space.reinit(lift);
-    const auto &dofs = space.velocity.dofs();
+    const auto                                  &dofs = space.velocity.dofs();
     std::vector<dealii::types::global_dof_index> indices(27);
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned())
@@ -157,8 +157,10 @@ namespace
   void
   add_body_force(const TaylorHoodSpace &space, FluidBlockVector &rhs)
   {
-    const dealii::QGauss<3> quadrature(4);
-    dealii::FEValues<3>     values(space.velocity.dofs().get_fe(), quadrature, dealii::update_values | dealii::update_quadrature_points | dealii::update_JxW_values);
+    const dealii::QGauss<3>                      quadrature(4);
+    dealii::FEValues<3>                          values(space.velocity.dofs().get_fe(),
+                               quadrature,
+                               dealii::update_values | dealii::update_quadrature_points | dealii::update_JxW_values);
     std::vector<dealii::types::global_dof_index> indices(27);
     for (const auto &cell : space.velocity.dofs().active_cell_iterators())
       if (cell->is_locally_owned())
@@ -258,8 +260,8 @@ namespace
         EXPECT_TRUE(report.converged);
         e.push_back(errors<Manufactured>(problem.space, solution));
         if (is_root())
-          std::cout << "coarse cell " << coarse << ": " << problem.mesh.triangulation().n_global_active_cells() << " cells, error u " << e.back().first << ", p "
-                    << e.back().second << ", " << report.iterations << " iterations" << std::endl;
+          std::cout << "coarse cell " << coarse << ": " << problem.mesh.triangulation().n_global_active_cells() << " cells, error u " << e.back().first
+                    << ", p " << e.back().second << ", " << report.iterations << " iterations" << std::endl;
       }
     for (unsigned int i = 1; i < e.size(); ++i)
       {
@@ -324,9 +326,9 @@ TEST(Stokes, UndisturbedShearIsExact)
 
 TEST(Stokes, AgreesWithDirectSolver)
 {
-  const Problem problem(MPI_COMM_WORLD, 1., 0.5, sphere_points(Point(-0.9, 0.2, 0.), 0.2));
-  const auto   &space = problem.space;
-  LinearReport  report;
+  const Problem    problem(MPI_COMM_WORLD, 1., 0.5, sphere_points(Point(-0.9, 0.2, 0.), 0.2));
+  const auto      &space = problem.space;
+  LinearReport     report;
   FluidBlockVector rhs, x;
   space.reinit(rhs);
   space.reinit(x);
@@ -388,7 +390,7 @@ TEST(Stokes, AgreesWithDirectSolver)
 
 TEST(FluidMesh, IsFineAtTheShellAndForgetsItsHistory)
 {
-  FluidMesh mesh(MPI_COMM_WORLD, side, Problem::parameters(0.5, 0.0625)), fresh(MPI_COMM_WORLD, side, Problem::parameters(0.5, 0.0625));
+  FluidMesh  mesh(MPI_COMM_WORLD, side, Problem::parameters(0.5, 0.0625)), fresh(MPI_COMM_WORLD, side, Problem::parameters(0.5, 0.0625));
   const auto first = sphere_points(Point(-0.5, 0.9, 0.), 0.4), second = sphere_points(Point(0.9, 0.9, 0.1), 0.3);
   EXPECT_TRUE(mesh.adapt(first));
   EXPECT_FALSE(mesh.adapt(first));
@@ -404,8 +406,8 @@ TEST(FluidMesh, IsFineAtTheShellAndForgetsItsHistory)
 
 TEST(PointInterpolation, FindsTheCellsDealiiFinds)
 {
-  const Problem      problem(MPI_COMM_SELF, 0.5, 0.125, sphere_points(Point(0.9, 0.2, 0.), 0.5));
-  const CellLocator  locator(problem.mesh);
+  const Problem                                               problem(MPI_COMM_SELF, 0.5, 0.125, sphere_points(Point(0.9, 0.2, 0.), 0.5));
+  const CellLocator                                           locator(problem.mesh);
   std::vector<dealii::Triangulation<3>::active_cell_iterator> cells;
   for (const auto &cell : problem.mesh.triangulation().active_cell_iterators())
     cells.push_back(cell);
@@ -413,9 +415,9 @@ TEST(PointInterpolation, FindsTheCellsDealiiFinds)
   std::uniform_real_distribution<double> coordinate(-0.999, 0.999);
   for (unsigned int i = 0; i < 300; ++i)
     {
-      Point x(coordinate(random), coordinate(random), coordinate(random));
-      const auto  expected = dealii::GridTools::find_active_cell_around_point(dealii::StaticMappingQ1<3>::mapping, problem.mesh.triangulation(), x);
-      const auto  found    = locator.locate(x);
+      Point      x(coordinate(random), coordinate(random), coordinate(random));
+      const auto expected = dealii::GridTools::find_active_cell_around_point(dealii::StaticMappingQ1<3>::mapping, problem.mesh.triangulation(), x);
+      const auto found    = locator.locate(x);
       EXPECT_EQ(cells[found.cell], expected.first);
       EXPECT_LT(found.unit.distance(expected.second), 1e-10);
       const auto wrapped = locator.locate(x + Point(2. * side, -side, 0.));
@@ -436,7 +438,7 @@ TEST(PointInterpolation, CellAndPositionAgreeWithinRoundingOfFaces)
     {
       FluidMesh mesh(MPI_COMM_SELF, box, parameters);
       mesh.adapt(sphere_points(Point(0.1, 0.2, 0.3), 1.));
-      const CellLocator locator(mesh);
+      const CellLocator                                           locator(mesh);
       std::vector<dealii::Triangulation<3>::active_cell_iterator> cells;
       for (const auto &cell : mesh.triangulation().active_cell_iterators())
         cells.push_back(cell);
@@ -455,8 +457,8 @@ TEST(PointInterpolation, CellAndPositionAgreeWithinRoundingOfFaces)
 
 TEST(PointInterpolation, GradientIsDerivativeAndLoadIsTranspose)
 {
-  const Problem problem(MPI_COMM_WORLD, 0.5, 0.125, sphere_points(Point(0.9, 0.2, 0.), 0.5));
-  LinearReport  report;
+  const Problem    problem(MPI_COMM_WORLD, 0.5, 0.125, sphere_points(Point(0.9, 0.2, 0.), 0.5));
+  LinearReport     report;
   FluidBlockVector rhs, u;
   problem.space.reinit(rhs);
   problem.space.reinit(u);

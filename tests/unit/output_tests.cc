@@ -85,7 +85,8 @@ namespace
   std::vector<Number>
   array(const std::string &file, const std::string &name, const std::string &type, const int n_components)
   {
-    const std::string tag   = "<DataArray type=\"" + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" + std::to_string(n_components) + "\" format=\"binary\">";
+    const std::string tag =
+      "<DataArray type=\"" + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" + std::to_string(n_components) + "\" format=\"binary\">";
     const std::size_t start = file.find(tag);
     if (start == std::string::npos)
       throw std::runtime_error("no array " + tag);
@@ -103,7 +104,7 @@ namespace
 
 TEST_F(Output, VtuHoldsPointsCellsAndFieldsBitForBit)
 {
-  const ControlPoints   x = octahedron() / 3.0;
+  const ControlPoints   x      = octahedron() / 3.0;
   const Eigen::MatrixXd scalar = Eigen::VectorXd::LinSpaced(6, -1e-300, 0.1), vector = x.array().sin().matrix();
   write_surface_vtu(path("s.vtu"), x, octahedron_faces, {{"curvature", scalar}, {"velocity", vector}});
   const std::string file = content("s.vtu");

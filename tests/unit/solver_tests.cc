@@ -33,12 +33,12 @@ namespace
   /** A small scene: 162 control points, finest cell 10a/32, box 5a or 10a. */
   struct Scene
   {
-    Scene(const ShellModuli           &moduli,
-          const double                 shear_rate,
+    Scene(const ShellModuli            &moduli,
+          const double                  shear_rate,
           const CapsuleShapeParameters &capsule,
-          const SolverParameters      &solver_parameters,
-          const double                 side        = 5.,
-          const double                 finest_cell = 0.3125)
+          const SolverParameters       &solver_parameters,
+          const double                  side        = 5.,
+          const double                  finest_cell = 0.3125)
       : parameters(solver_parameters)
       , shape(shifted_capsule(capsule))
       , surface(shape.topology, triangle_quadrature(3), Derivatives::second)
@@ -155,12 +155,12 @@ TEST(ConstantPressureJump, DrivesNoFlow)
 TEST(MonolithicSystem, IsTheDerivativeOfTheResidual)
 {
   // One Newton step with exact linear solves from a point displaced by epsilon leaves a residual of order epsilon^2.
-  Scene scene({5., 0.2}, 1., ellipsoid(1.3, 1.1, 1.), tight(1e-8, 1e-8));
-  const ControlPoints x0     = scene.state.x;
+  Scene               scene({5., 0.2}, 1., ellipsoid(1.3, 1.1, 1.), tight(1e-8, 1e-8));
+  const ControlPoints x0 = scene.state.x;
   scene.solver.solve_flow(scene.state);
   ASSERT_TRUE(scene.solver.solve(scene.state, x0, 0.05).converged);
 
-  SolverParameters one = scene.parameters;
+  SolverParameters one      = scene.parameters;
   one.max_newton_iterations = 1;
   NewtonSolver single(one, scene.shell, scene.surface, scene.coupling, scene.volume, {1.}, scene.timings);
   single.attach(scene.fluid);
@@ -189,7 +189,7 @@ TEST(MonolithicSystem, IsTheDerivativeOfTheResidual)
 
 TEST(Newton, ConvergesQuadratically)
 {
-  Scene        scene({5., 0.2}, 1., {}, tight(1e-9, 1e-8));
+  Scene scene({5., 0.2}, 1., {}, tight(1e-9, 1e-8));
   scene.solver.solve_flow(scene.state);
   for (unsigned int step = 0; step < 2; ++step)
     {
@@ -211,13 +211,13 @@ TEST(Newton, ConvergesQuadratically)
 TEST(Newton, ReportsWhatItCannotSolve)
 {
   Scene            scene({5., 0.2}, 1., {}, tight(1e-9, 1e-3));
-  SolverParameters few          = scene.parameters;
+  SolverParameters few      = scene.parameters;
   few.max_linear_iterations = 2;
   NewtonSolver hopeless(few, scene.shell, scene.surface, scene.coupling, scene.volume, {1.}, scene.timings);
   hopeless.attach(scene.fluid);
-  scene.state.force          = scene.shell.force(scene.state.x);
-  const State        before  = scene.state;
-  const NewtonReport report  = hopeless.solve(scene.state, before.x, 0.1);
+  scene.state.force         = scene.shell.force(scene.state.x);
+  const State        before = scene.state;
+  const NewtonReport report = hopeless.solve(scene.state, before.x, 0.1);
   EXPECT_FALSE(report.converged);
   EXPECT_NE(report.message.find("linear solver"), std::string::npos);
   EXPECT_EQ(scene.state.x, before.x);
@@ -230,9 +230,9 @@ TEST(BackwardEuler, EnergyFallsWithoutFlow)
   // Neo-Hookean membrane and Helfrich bending (kappa_B = 1) about a flat reference: the ellipsoid relaxes. Steps from 0.005 to 5 mu a^3 / kappa_B.
   for (const double dt : {0.005, 0.05, 0.5, 5.})
     {
-      Scene        scene({10., 1.}, 0., ellipsoid(1.4, 1.2, 1.), tight(1e-6, 1e-3));
+      Scene scene({10., 1.}, 0., ellipsoid(1.4, 1.2, 1.), tight(1e-6, 1e-3));
       scene.solver.solve_flow(scene.state);
-      const auto   energy = [&]() {
+      const auto energy = [&]() {
         const Shell::Energy e = scene.shell.energy(scene.state.x);
         return e.membrane + e.bending;
       };

@@ -844,12 +844,12 @@ namespace
 TEST(Interior, AgreesWithTheEllipsoid)
 {
   CapsuleShapeParameters parameters;
-  parameters.shape                = Shape::ellipsoid;
-  parameters.axes                 = {{2., 1.5, 1.}};
-  const FittedShape        shape  = make_capsule(parameters, 3);
+  parameters.shape               = Shape::ellipsoid;
+  parameters.axes                = {{2., 1.5, 1.}};
+  const FittedShape        shape = make_capsule(parameters, 3);
   const SubdivisionSurface surface(shape.topology, triangle_quadrature(3), Derivatives::first);
   const Interior           interior(surface, shape.control_points);
-  const double             scale = std::cbrt(1. / 3.);
+  const double             scale  = std::cbrt(1. / 3.);
   const ControlPoints      points = random_field(4000, 1.6, 5);
   unsigned int             inside = 0, checked = 0;
   for (Eigen::Index i = 0; i < points.rows(); ++i)

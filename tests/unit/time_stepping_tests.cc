@@ -43,7 +43,7 @@ TEST(TimeStepping, OrdersOnADecayingMotion)
   // x' = -x over one unit of time; the implicit equation is solved by hand.
   const auto error = [](const unsigned int n, const bool second_order) {
     const double  dt = 1. / n;
-    ControlPoints x = one_point(1.), previous;
+    ControlPoints x  = one_point(1.), previous;
     for (unsigned int i = 0; i < n; ++i)
       {
         const ImplicitStep step = second_order && i > 0 ? bdf2_step(x, previous, dt, dt) : backward_euler_step(x, dt);

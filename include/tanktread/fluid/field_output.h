@@ -18,12 +18,12 @@ namespace tanktread
    * @param further_pressure function of position, not smooth in general: that of the capsule's interior. @param fields condensed coefficients as in State::fluid. Collective. @return name of the PVTU file, without the folder.
    */
   std::string
-  write_fluid_fields(const std::string                                      &folder,
-                     const std::string                                      &name,
-                     unsigned int                                            counter,
-                     const TaylorHoodSpace                                  &space,
-                     const FluidBlockVector                                 &fields,
-                     double                                                  shear_rate,
+  write_fluid_fields(const std::string                                     &folder,
+                     const std::string                                     &name,
+                     unsigned int                                           counter,
+                     const TaylorHoodSpace                                 &space,
+                     const FluidBlockVector                                &fields,
+                     double                                                 shear_rate,
                      const std::function<double(const dealii::Point<3> &)> &further_pressure);
 } // namespace tanktread
 

@@ -19,8 +19,8 @@ namespace tanktread
   /** Level and integer position of a cube: along each axis it covers [i h_l, (i+1) h_l] from the lower corner of the box, h_l = coarsest / 2^l. */
   struct CellKey
   {
-    unsigned int         level;
-    std::array<int, 3>   position;
+    unsigned int       level;
+    std::array<int, 3> position;
 
     /** All of the key in one number: 7 bits of level, 19 bits an axis. */
     std::uint64_t

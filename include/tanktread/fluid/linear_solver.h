@@ -40,8 +40,8 @@ namespace tanktread
     report.initial_residual = rhs.l2_norm();
     if (!std::isfinite(report.initial_residual))
       return report;
-    dealii::SolverControl                                         control(max_iterations, relative_tolerance * report.initial_residual + 1e-300, false, false);
-    dealii::SolverFGMRES<FluidBlockVector>::AdditionalData        data;
+    dealii::SolverControl                                  control(max_iterations, relative_tolerance * report.initial_residual + 1e-300, false, false);
+    dealii::SolverFGMRES<FluidBlockVector>::AdditionalData data;
     data.max_basis_size = 60;
     dealii::SolverFGMRES<FluidBlockVector> solver(control, data);
     try

@@ -35,9 +35,9 @@ namespace tanktread
     locate(const dealii::Point<3> &point) const;
 
   private:
-    const FluidMesh                        &mesh_;
-    std::unordered_map<std::uint64_t, int>  cells_;
-    std::vector<unsigned int>               levels_; // that occur on this rank, finest first
+    const FluidMesh                       &mesh_;
+    std::unordered_map<std::uint64_t, int> cells_;
+    std::vector<unsigned int>              levels_; // that occur on this rank, finest first
   };
 
   /**
@@ -94,15 +94,15 @@ namespace tanktread
     const ResolvedCell &
     resolve(int cell);
 
-    const TaylorHoodSpace                                &space_;
-    CellLocator                                           locator_;
+    const TaylorHoodSpace                                   &space_;
+    CellLocator                                              locator_;
     std::vector<dealii::DoFHandler<3>::active_cell_iterator> cells_;
-    std::unordered_map<int, ResolvedCell>                 resolved_;
-    std::vector<unsigned int>                             lexicographic_to_hierarchic_;
-    unsigned int                                          n_points_ = 0;
-    std::vector<unsigned int>                             local_points_;
-    std::vector<std::size_t>                              row_start_;
-    std::vector<Entry>                                    entries_;
+    std::unordered_map<int, ResolvedCell>                    resolved_;
+    std::vector<unsigned int>                                lexicographic_to_hierarchic_;
+    unsigned int                                             n_points_ = 0;
+    std::vector<unsigned int>                                local_points_;
+    std::vector<std::size_t>                                 row_start_;
+    std::vector<Entry>                                       entries_;
   };
 } // namespace tanktread
 

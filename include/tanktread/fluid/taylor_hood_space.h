@@ -42,9 +42,9 @@ namespace tanktread
     }
 
   private:
-    dealii::FE_Q<3>                                             fe_;
-    dealii::DoFHandler<3>                                       dof_handler_;
-    dealii::AffineConstraints<double>                           constraints_;
+    dealii::FE_Q<3>                                            fe_;
+    dealii::DoFHandler<3>                                      dof_handler_;
+    dealii::AffineConstraints<double>                          constraints_;
     std::shared_ptr<const dealii::Utilities::MPI::Partitioner> partitioner_;
   };
 

@@ -62,30 +62,30 @@ namespace tanktread
     void
     record(const StepResult &step, bool last);
 
-    const Parameters                   &parameters_;
-    MPI_Comm                            communicator_;
-    bool                                first_rank_;
-    Timings                             timings_;
-    Log                                 log_;
-    FittedShape                         shape_;
-    SubdivisionSurface                  surface_;
-    Shell                               shell_;
-    Fluid                               fluid_;
-    SubdivisionSurface                  coupling_surface_;
-    Coupling                            coupling_;
-    ShellView                           view_;
-    UndisturbedFlow                     flow_;
-    NewtonSolver                        solver_;
-    State                               state_;
-    double                              time_        = 0.;
-    double                              next_length_;
-    unsigned int                        n_steps_ = 0, n_quiet_steps_ = 0, remeshing_iterations_ = 0;
-    double                              next_fields_, next_history_ = 0.;
-    ControlPoints                       previous_x_;          // of the step before, empty at the start
-    std::unique_ptr<State>              previous_state_;      // none right after a change of mesh
-    double                              previous_length_ = 0.;
-    InertiaEllipsoid                    ellipsoid_{};
-    std::unique_ptr<Results>            results_;
+    const Parameters        &parameters_;
+    MPI_Comm                 communicator_;
+    bool                     first_rank_;
+    Timings                  timings_;
+    Log                      log_;
+    FittedShape              shape_;
+    SubdivisionSurface       surface_;
+    Shell                    shell_;
+    Fluid                    fluid_;
+    SubdivisionSurface       coupling_surface_;
+    Coupling                 coupling_;
+    ShellView                view_;
+    UndisturbedFlow          flow_;
+    NewtonSolver             solver_;
+    State                    state_;
+    double                   time_ = 0.;
+    double                   next_length_;
+    unsigned int             n_steps_ = 0, n_quiet_steps_ = 0, remeshing_iterations_ = 0;
+    double                   next_fields_, next_history_ = 0.;
+    ControlPoints            previous_x_;     // of the step before, empty at the start
+    std::unique_ptr<State>   previous_state_; // none right after a change of mesh
+    double                   previous_length_ = 0.;
+    InertiaEllipsoid         ellipsoid_{};
+    std::unique_ptr<Results> results_;
   };
 } // namespace tanktread
 

@@ -146,9 +146,9 @@ namespace tanktread
     SparseMatrix    pressure_stiffness_; // pi H_V
     SparseMatrix    stiffness_;          // K - pi H_V
     SparseMatrix    Z_;
-    SparseMatrix    motion_;             // A = M - tau Gamma - sigma H_V
+    SparseMatrix    motion_; // A = M - tau Gamma - sigma H_V
     Factorisation   motion_factors_;
-    Factorisation   implicit_shell_;     // of Z + tau (K - pi H_V)
+    Factorisation   implicit_shell_; // of Z + tau (K - pi H_V)
   };
 } // namespace tanktread
 

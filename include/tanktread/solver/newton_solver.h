@@ -21,20 +21,20 @@ namespace tanktread
     bool                converged         = false;
     unsigned int        newton_iterations = 0;
     unsigned int        linear_iterations = 0;
-    std::vector<double> residuals; // norm before the first and after each iteration
+    std::vector<double> residuals;    // norm before the first and after each iteration
     std::vector<double> step_lengths; // of the line search
-    std::string         message;   // why it failed
+    std::string         message;      // why it failed
   };
 
   /** A residual (r_u, r_p; r_x; r_F; r_pi; r_V). */
   struct Residual
   {
-    FluidBlockVector fluid;        // A u - B^T p - R(F + pi v), -B u
-    double           shell_speed;  // root mean square of J P^{-1} (r_u, r_p), P the Stokes preconditioner: about how fast the missing forces would move the shell
-    ControlPoints    x;            // x - xhat - tau (J u + undisturbed flow) - sigma m
-    ControlPoints    force;        // F - f(x)
-    double           flux;         // v . (J u + u_inf)
-    double           volume;       // V - V0
+    FluidBlockVector fluid;    // A u - B^T p - R(F + pi v), -B u
+    double        shell_speed; // root mean square of J P^{-1} (r_u, r_p), P the Stokes preconditioner: about how fast the missing forces would move the shell
+    ControlPoints x;           // x - xhat - tau (J u + undisturbed flow) - sigma m
+    ControlPoints force;       // F - f(x)
+    double        flux;        // v . (J u + u_inf)
+    double        volume;      // V - V0
   };
 
   /**
@@ -54,7 +54,13 @@ namespace tanktread
   {
   public:
     /** All arguments are kept by reference. `volume` is V0. */
-    NewtonSolver(const SolverParameters &parameters, const Shell &shell, const SubdivisionSurface &surface, Coupling &coupling, double volume, UndisturbedFlow flow, Timings &timings);
+    NewtonSolver(const SolverParameters   &parameters,
+                 const Shell              &shell,
+                 const SubdivisionSurface &surface,
+                 Coupling                 &coupling,
+                 double                    volume,
+                 UndisturbedFlow           flow,
+                 Timings                  &timings);
 
     /** To be called for every new fluid mesh. */
     void

@@ -30,10 +30,10 @@ namespace tanktread
    */
   struct State
   {
-    ControlPoints    x;     // control points, NP x 3, in a
-    ControlPoints    force; // F, NP x 3
-    FluidBlockVector fluid; // disturbance velocity (blocks 0-2) and pressure (block 3), condensed: constrained entries are zero
-    double           volume_shift = 0.;  // sigma: displacement along m = M^{-1} dV/dx, in a, that undoes the volume error of the time scheme
+    ControlPoints    x;                  // control points, NP x 3, in a
+    ControlPoints    force;              // F, NP x 3
+    FluidBlockVector fluid;              // disturbance velocity (blocks 0-2) and pressure (block 3), condensed: constrained entries are zero
+    double           volume_shift  = 0.; // sigma: displacement along m = M^{-1} dV/dx, in a, that undoes the volume error of the time scheme
     double           pressure_jump = 0.; // pi: pressure of the capsule's interior above that of the continuous field
   };
 } // namespace tanktread
