@@ -71,10 +71,12 @@ namespace tanktread
     , view_{shape_.topology, surface_, shell_, enclosed_volume(surface_, shape_.control_points)}
     , flow_{parameters.scene.flow == Flow::shear ? 1. : 0.}
     , solver_(parameters.solver, shell_, surface_, coupling_, view_.initial_volume, flow_, timings_)
-    , next_length_(parameters.time.step)
     , next_fields_(parameters.output.field_interval)
+    , history_(parameters.time)
   {
-    state_.x                        = shape_.control_points;
+    state_.x     = shape_.control_points;
+    next_length_ = history_.first_length();
+    history_.add(0., state_.x);
     const Eigen::RowVector3d extent = 2. * state_.x.cwiseAbs().colwise().maxCoeff();
     if (extent.maxCoeff() >= parameters.scene.box_side)
       {
@@ -148,20 +150,12 @@ namespace tanktread
 
 
   NewtonReport
-  Simulation::try_step(const double length, const bool from_extrapolation)
+  Simulation::try_step(const double length, const bool from_extrapolation, State &next)
   {
-    const bool         bdf2   = parameters_.time.scheme == TimeScheme::bdf2 && previous_x_.size() > 0;
-    const ImplicitStep step   = bdf2 ? bdf2_step(state_.x, previous_x_, length, previous_length_) : backward_euler_step(state_.x, length);
-    State              guess  = from_extrapolation ? extrapolated(length) : state_;
-    const NewtonReport report = solver_.solve(guess, step.xhat, step.tau);
-    if (report.converged)
-      {
-        previous_state_  = std::make_unique<State>(std::move(state_));
-        previous_x_      = previous_state_->x;
-        previous_length_ = length;
-        state_           = std::move(guess);
-      }
-    else
+    const ImplicitStep step   = history_.step(length);
+    next                      = from_extrapolation ? extrapolated(length) : state_;
+    const NewtonReport report = solver_.solve(next, step.xhat, step.tau);
+    if (!report.converged)
       {
         std::ostringstream text;
         text << "Step of length " << length << " failed from the " << (from_extrapolation ? "extrapolated" : "last") << " state: " << report.message
@@ -174,25 +168,51 @@ namespace tanktread
   }
 
 
+  bool
+  Simulation::accept_step(const double length, State &next)
+  {
+    const double error = history_.local_error(length, next.x), factor = history_.length_factor(error), tolerance = parameters_.time.tolerance;
+    next_length_ = std::min(parameters_.time.step, factor * length);
+    if (tolerance > 0. && error > 2. * tolerance && length > 1e-3 * parameters_.time.step)
+      {
+        std::ostringstream text;
+        text << "Step of length " << length << " repeated: its local error is " << error << ", Time/Tolerance " << tolerance << '.';
+        log_.line(text.str());
+        return false;
+      }
+    previous_state_  = std::make_unique<State>(std::move(state_));
+    previous_length_ = length;
+    state_           = std::move(next);
+    history_.add(time_ + length, state_.x);
+    return true;
+  }
+
+
   Simulation::StepResult
   Simulation::implicit_step()
   {
     StepResult   result;
+    State        next;
     const double wanted = std::min(next_length_, parameters_.scene.end_time - time_), shortest = std::min(wanted, 1e-3 * parameters_.time.step);
-    for (result.length = wanted; result.length >= shortest; result.length *= 0.5)
-      for (const bool from_extrapolation : {true, false})
-        {
-          if (from_extrapolation && (!previous_state_ || result.length < wanted))
-            continue;
-          const NewtonReport report = try_step(result.length, from_extrapolation);
-          result.newton_iterations += report.newton_iterations;
-          result.linear_iterations += report.linear_iterations;
-          if (report.converged)
+    bool         first_attempt = true;
+    for (result.length = wanted; result.length >= shortest;)
+      {
+        NewtonReport report;
+        for (const bool from_extrapolation : {true, false})
+          if (!report.converged && (!from_extrapolation || (previous_state_ && first_attempt)))
             {
-              next_length_ = result.length < wanted ? result.length : std::min(parameters_.time.step, 1.5 * next_length_);
-              return result;
+              report = try_step(result.length, from_extrapolation, next);
+              result.newton_iterations += report.newton_iterations;
+              result.linear_iterations += report.linear_iterations;
             }
-        }
+        first_attempt = false;
+        if (!report.converged)
+          result.length *= 0.5;
+        else if (accept_step(result.length, next))
+          return result;
+        else
+          result.length = next_length_;
+      }
     throw NumericalError("No time step between " + std::to_string(shortest) + " and " + std::to_string(wanted) + " could be solved.");
   }
 

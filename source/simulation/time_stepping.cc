@@ -16,10 +16,15 @@ namespace tanktread
                        scheme,
                        {{"BDF2", TimeScheme::bdf2}, {"backward Euler", TimeScheme::backward_euler}},
                        "BDF2: second order, variable steps, first step backward Euler; backward Euler: first order.");
-    prm.add_parameter("Step",
-                      step,
-                      "Length of a time step, in the scene's unit of time. A rejected step is tried with half its length and grows back.",
-                      Double(1e-8, 1e3));
+    prm.add_parameter(
+      "Step",
+      step,
+      "Length of a time step, in the scene's unit of time; with a tolerance the largest length. A step that fails is tried with half its length.",
+      Double(1e-8, 1e3));
+    prm.add_parameter("Tolerance",
+                      tolerance,
+                      "Largest local error of a step, root mean square over the shell's control points, in a; 0: all steps have length Step.",
+                      Double(0., 1.));
     prm.add_parameter("Steady tolerance",
                       steady_tolerance,
                       "The run ends when semi-axes (in a) and inclination (in radians) change slower than this per unit of time; 0: at the end time only.",

@@ -2,7 +2,7 @@
 // Part of Tanktread: exact statements about the time schemes.
 
 #include <gtest/gtest.h>
-#include <tanktread/simulation/time_stepping.h>
+#include <tanktread/simulation/step_history.h>
 
 #include <cmath>
 
@@ -54,4 +54,34 @@ TEST(TimeStepping, OrdersOnADecayingMotion)
   };
   EXPECT_NEAR(std::log2(error(40, false) / error(80, false)), 1., 0.05);
   EXPECT_NEAR(std::log2(error(40, true) / error(80, true)), 2., 0.1);
+}
+
+
+TEST(StepHistory, LocalErrorIsWhatTheExactMotionLeavesInTheScheme)
+{
+  // For a cubic motion the leading term is all there is (BDF2), for a quadratic one too (backward Euler).
+  const auto x = [](const double t) { return one_point(1. + 2. * t - 3. * t * t + 4. * t * t * t); };
+  const auto v = [](const double t) { return one_point(2. - 6. * t + 12. * t * t); };
+
+  TimeParameters parameters;
+  parameters.tolerance = 1e-3;
+  StepHistory bdf2(parameters);
+  for (const double t : {0.1, 0.25, 0.3})
+    bdf2.add(t, x(t));
+  for (const double length : {0.04, 0.1})
+    {
+      const ImplicitStep  step = bdf2.step(length);
+      const ControlPoints left = x(0.3 + length) - step.xhat - step.tau * v(0.3 + length);
+      EXPECT_NEAR(bdf2.local_error(length, x(0.3 + length)), left.norm(), 1e-12);
+    }
+
+  const auto y      = [](const double t) { return one_point(1. - 3. * t * t); };
+  parameters.scheme = TimeScheme::backward_euler;
+  StepHistory euler(parameters);
+  euler.add(0., y(0.));
+  EXPECT_EQ(euler.local_error(0.1, y(0.1)), 0.);
+  euler.add(0.1, y(0.1));
+  EXPECT_NEAR(euler.local_error(0.2, y(0.3)), 3. * 0.2 * 0.2 * std::sqrt(3.), 1e-12);
+  EXPECT_NEAR(euler.length_factor(4. * parameters.tolerance), 0.45, 1e-12);
+  EXPECT_EQ(euler.length_factor(0.), 1.5);
 }

@@ -8,6 +8,7 @@
 #include <tanktread/base/timings.h>
 #include <tanktread/simulation/parameters.h>
 #include <tanktread/simulation/results.h>
+#include <tanktread/simulation/step_history.h>
 #include <tanktread/solver/newton_solver.h>
 
 #include <memory>
@@ -45,9 +46,12 @@ namespace tanktread
     refine_around_shell();
     StepResult
     implicit_step();
-    /** One attempt at a step; moves the state if it converges and logs it if not. */
+    /** One attempt at a step: sets `next` to the new level, or says in the log why not. */
     NewtonReport
-    try_step(double length, bool from_extrapolation);
+    try_step(double length, bool from_extrapolation, State &next);
+    /** Makes `next` the present state, if its local error allows it, and sets the length of the step to come. */
+    bool
+    accept_step(double length, State &next);
     StepResult
     explicit_step();
     State
@@ -81,7 +85,7 @@ namespace tanktread
     double                   next_length_;
     unsigned int             n_steps_ = 0, n_quiet_steps_ = 0, remeshing_iterations_ = 0;
     double                   next_fields_, next_history_ = 0.;
-    ControlPoints            previous_x_;     // of the step before, empty at the start
+    StepHistory              history_;
     std::unique_ptr<State>   previous_state_; // none right after a change of mesh
     double                   previous_length_ = 0.;
     InertiaEllipsoid         ellipsoid_{};

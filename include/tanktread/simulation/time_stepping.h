@@ -24,6 +24,7 @@ namespace tanktread
   {
     TimeScheme scheme           = TimeScheme::bdf2;
     double     step             = 0.1;
+    double     tolerance        = 0.;
     double     steady_tolerance = 0.;
 
     /** Declares section "Time" in `prm`; parsing fills this object, which has to outlive `prm`. */

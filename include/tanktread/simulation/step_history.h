@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: the positions that a time scheme looks back to, the error of a step and the length of the next.
+
+#ifndef tanktread_simulation_step_history_h
+#define tanktread_simulation_step_history_h
+
+#include <tanktread/simulation/time_stepping.h>
+
+#include <deque>
+
+namespace tanktread
+{
+  /** The last positions of the shell, at most three, and the scheme on them. Needs nothing of the fluid, so it outlives changes of its mesh. */
+  class StepHistory
+  {
+  public:
+    explicit StepHistory(const TimeParameters &parameters)
+      : parameters_(parameters)
+    {}
+
+    /** Appends an accepted level; times increase. */
+    void
+    add(double time, const ControlPoints &x);
+
+    /** The scheme for a step of `length` from the last level: backward Euler while there is only one. */
+    ImplicitStep
+    step(double length) const;
+
+    /**
+     * Local error of a step to x (root mean square over the control points, in a), from the divided differences of the positions,
+     *
+     *     backward Euler: 1/2 dt^2 x'',   BDF2: (1 + omega)^2 / (6 omega (1 + 2 omega)) dt^3 x''',
+     *
+     * the terms by which the exact motion misses the scheme. Zero while there are too few levels to tell.
+     */
+    double
+    local_error(double length, const ControlPoints &x) const;
+
+    /** Factor by which the length of a step with this local error should change so that it meets Time/Tolerance, between 0.3 and 1.5. */
+    double
+    length_factor(double local_error) const;
+
+    /** First length: Time/Step, or shorter where the tolerance asks for it: the first two steps have no error estimate, so unit acceleration is assumed. */
+    double
+    first_length() const;
+
+  private:
+    bool
+    is_second_order() const
+    {
+      return parameters_.scheme == TimeScheme::bdf2 && levels_.size() > 1;
+    }
+
+    struct Level
+    {
+      double        time;
+      ControlPoints x;
+    };
+
+    TimeParameters    parameters_;
+    std::deque<Level> levels_; // newest first
+  };
+} // namespace tanktread
+
+#endif

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: the positions that a time scheme looks back to, the error of a step and the length of the next.
+
+#include <tanktread/simulation/step_history.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace tanktread
+{
+  void
+  StepHistory::add(const double time, const ControlPoints &x)
+  {
+    levels_.push_front({time, x});
+    if (levels_.size() > 3)
+      levels_.pop_back();
+  }
+
+
+  ImplicitStep
+  StepHistory::step(const double length) const
+  {
+    if (!is_second_order())
+      return backward_euler_step(levels_[0].x, length);
+    return bdf2_step(levels_[0].x, levels_[1].x, length, levels_[0].time - levels_[1].time);
+  }
+
+
+  double
+  StepHistory::local_error(const double length, const ControlPoints &x) const
+  {
+    const std::size_t order = is_second_order() ? 2 : 1;
+    if (levels_.size() < order + 1)
+      return 0.;
+
+    // Divided difference of order + 2 positions, the new one first: derivative of that order over its factorial.
+    std::vector<double>        times       = {levels_[0].time + length};
+    std::vector<ControlPoints> differences = {x};
+    for (std::size_t i = 0; i <= order; ++i)
+      {
+        times.push_back(levels_[i].time);
+        differences.push_back(levels_[i].x);
+      }
+    for (std::size_t k = 1; k <= order + 1; ++k)
+      for (std::size_t i = 0; i + k <= order + 1; ++i)
+        differences[i] = (differences[i] - differences[i + 1]) / (times[i] - times[i + k]);
+
+    const double omega  = length / (times[1] - times[2]);
+    const double weight = order == 1 ? length * length : (1. + omega) * (1. + omega) / (omega * (1. + 2. * omega)) * length * length * length;
+    return weight * differences[0].norm() / std::sqrt(double(x.rows()));
+  }
+
+
+  double
+  StepHistory::length_factor(const double local_error) const
+  {
+    if (parameters_.tolerance == 0.)
+      return 1.5;
+    const double order = is_second_order() ? 2. : 1.;
+    return std::clamp(0.9 * std::pow(parameters_.tolerance / (local_error + 1e-300), 1. / (order + 1.)), 0.3, 1.5);
+  }
+
+
+  double
+  StepHistory::first_length() const
+  {
+    return parameters_.tolerance == 0. ? parameters_.step : std::min(parameters_.step, std::sqrt(2. * parameters_.tolerance));
+  }
+} // namespace tanktread
