@@ -71,12 +71,11 @@ namespace tanktread
     , view_{shape_.topology, surface_, shell_, enclosed_volume(surface_, shape_.control_points)}
     , flow_{parameters.scene.flow == Flow::shear ? 1. : 0.}
     , solver_(parameters.solver, shell_, surface_, coupling_, view_.initial_volume, flow_, timings_)
+    , stepper_(parameters.time, parameters.solver.coupling, parameters.scene.end_time, solver_, log_)
     , next_fields_(parameters.output.field_interval)
-    , history_(parameters.time)
   {
-    state_.x     = shape_.control_points;
-    next_length_ = history_.first_length();
-    history_.add(0., state_.x);
+    state_.x = shape_.control_points;
+    stepper_.start(time_, state_.x);
     const Eigen::RowVector3d extent = 2. * state_.x.cwiseAbs().colwise().maxCoeff();
     if (extent.maxCoeff() >= parameters.scene.box_side)
       {
@@ -93,7 +92,7 @@ namespace tanktread
     const Timings::Scope scope(timings_, "Fluid mesh and matrices");
     fluid_.adapt(coupling_.points(state_.x));
     solver_.attach(fluid_);
-    previous_state_.reset();
+    stepper_.forget_flow();
     fluid_.space().reinit(state_.fluid);
   }
 
@@ -131,126 +130,6 @@ namespace tanktread
          << fluid_.space().pressure.dofs().n_dofs() << " pressure unknowns.";
     log_.line(text.str());
     record(first, false);
-  }
-
-
-  State
-  Simulation::extrapolated(const double length) const
-  {
-    State guess = state_;
-    if (!previous_state_)
-      return guess;
-    const double ratio = length / previous_length_;
-    guess.x += ratio * (state_.x - previous_state_->x);
-    guess.force += ratio * (state_.force - previous_state_->force);
-    guess.pressure_jump += ratio * (state_.pressure_jump - previous_state_->pressure_jump);
-    guess.fluid.sadd(1. + ratio, -ratio, previous_state_->fluid);
-    return guess;
-  }
-
-
-  NewtonReport
-  Simulation::try_step(const double length, const bool from_extrapolation, State &next)
-  {
-    const ImplicitStep step   = history_.step(length);
-    next                      = from_extrapolation ? extrapolated(length) : state_;
-    const NewtonReport report = solver_.solve(next, step.xhat, step.tau);
-    if (!report.converged)
-      {
-        std::ostringstream text;
-        text << "Step of length " << length << " failed from the " << (from_extrapolation ? "extrapolated" : "last") << " state: " << report.message
-             << " (residuals";
-        for (const double residual : report.residuals)
-          text << ' ' << residual;
-        log_.line(text.str() + ").");
-      }
-    return report;
-  }
-
-
-  bool
-  Simulation::accept_step(const double length, State &next)
-  {
-    const double error = history_.local_error(length, next.x), factor = history_.length_factor(error), tolerance = parameters_.time.tolerance;
-    next_length_ = std::min(parameters_.time.step, factor * length);
-    if (tolerance > 0. && error > 2. * tolerance && length > 1e-3 * parameters_.time.step)
-      {
-        std::ostringstream text;
-        text << "Step of length " << length << " repeated: its local error is " << error << ", Time/Tolerance " << tolerance << '.';
-        log_.line(text.str());
-        return false;
-      }
-    previous_state_  = std::make_unique<State>(std::move(state_));
-    previous_length_ = length;
-    state_           = std::move(next);
-    history_.add(time_ + length, state_.x);
-    return true;
-  }
-
-
-  Simulation::StepResult
-  Simulation::implicit_step()
-  {
-    StepResult   result;
-    State        next;
-    const double wanted = std::min(next_length_, parameters_.scene.end_time - time_), shortest = std::min(wanted, 1e-3 * parameters_.time.step);
-    bool         first_attempt = true;
-    for (result.length = wanted; result.length >= shortest;)
-      {
-        NewtonReport report;
-        for (const bool from_extrapolation : {true, false})
-          if (!report.converged && (!from_extrapolation || (previous_state_ && first_attempt)))
-            {
-              report = try_step(result.length, from_extrapolation, next);
-              result.newton_iterations += report.newton_iterations;
-              result.linear_iterations += report.linear_iterations;
-            }
-        first_attempt = false;
-        if (!report.converged)
-          result.length *= 0.5;
-        else if (accept_step(result.length, next))
-          return result;
-        else
-          result.length = next_length_;
-      }
-    throw NumericalError("No time step between " + std::to_string(shortest) + " and " + std::to_string(wanted) + " could be solved.");
-  }
-
-
-  void
-  Simulation::check_explicit_step(const ControlPoints &displacement, const double length) const
-  {
-    const double largest = std::sqrt(displacement.rowwise().squaredNorm().maxCoeff());
-    if (!(largest < 1.))
-      {
-        std::ostringstream message;
-        message << "The explicit coupling is unstable at this step: a control point would move by " << largest << " a in one step of " << length
-                << ". Take a smaller Time/Step or Solver/Coupling = implicit.";
-        throw NumericalError(message.str());
-      }
-  }
-
-
-  Simulation::StepResult
-  Simulation::explicit_step()
-  {
-    StepResult result;
-    result.length              = std::min(parameters_.time.step, parameters_.scene.end_time - time_);
-    const ControlPoints change = result.length * solver_.shell_velocity(state_);
-    check_explicit_step(change, result.length);
-    State next = state_;
-    next.x += change;
-    try
-      {
-        result.linear_iterations = solver_.solve_flow(next);
-      }
-    catch (const NumericalError &error)
-      {
-        throw NumericalError(std::string("The explicit coupling failed at this step: ") + error.what() +
-                             " Take a smaller Time/Step or Solver/Coupling = implicit.");
-      }
-    state_ = std::move(next);
-    return result;
   }
 
 
@@ -307,7 +186,7 @@ namespace tanktread
     for (bool last = parameters_.scene.end_time <= 0.; !last;)
       {
         const InertiaEllipsoid before = ellipsoid_;
-        StepResult             step   = parameters_.solver.coupling == TimeCoupling::explicit_euler ? explicit_step() : implicit_step();
+        StepResult             step   = stepper_.step(state_, time_);
         step.linear_iterations += std::exchange(remeshing_iterations_, 0);
         time_ += step.length;
         ++n_steps_;

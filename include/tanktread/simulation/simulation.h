@@ -8,8 +8,7 @@
 #include <tanktread/base/timings.h>
 #include <tanktread/simulation/parameters.h>
 #include <tanktread/simulation/results.h>
-#include <tanktread/simulation/step_history.h>
-#include <tanktread/solver/newton_solver.h>
+#include <tanktread/simulation/time_stepper.h>
 
 #include <memory>
 
@@ -27,14 +26,6 @@ namespace tanktread
     run();
 
   private:
-    /** Length of the next step and how it went. */
-    struct StepResult
-    {
-      double       length            = 0.;
-      unsigned int newton_iterations = 0;
-      unsigned int linear_iterations = 0;
-    };
-
     void
     make_folder();
     void
@@ -44,20 +35,6 @@ namespace tanktread
     /** New mesh around the present shell, with a zero flow. */
     void
     refine_around_shell();
-    StepResult
-    implicit_step();
-    /** One attempt at a step: sets `next` to the new level, or says in the log why not. */
-    NewtonReport
-    try_step(double length, bool from_extrapolation, State &next);
-    /** Makes `next` the present state, if its local error allows it, and sets the length of the step to come. */
-    bool
-    accept_step(double length, State &next);
-    StepResult
-    explicit_step();
-    State
-    extrapolated(double length) const;
-    void
-    check_explicit_step(const ControlPoints &displacement, double length) const;
     bool
     is_steady(const InertiaEllipsoid &before, const InertiaEllipsoid &after, double length);
     /** Whether something that happens at multiples of `interval` (0: always) is due; moves `next` to the next time. */
@@ -80,14 +57,11 @@ namespace tanktread
     ShellView                view_;
     UndisturbedFlow          flow_;
     NewtonSolver             solver_;
+    TimeStepper              stepper_;
     State                    state_;
-    double                   time_ = 0.;
-    double                   next_length_;
+    double                   time_    = 0.;
     unsigned int             n_steps_ = 0, n_quiet_steps_ = 0, remeshing_iterations_ = 0;
     double                   next_fields_, next_history_ = 0.;
-    StepHistory              history_;
-    std::unique_ptr<State>   previous_state_; // none right after a change of mesh
-    double                   previous_length_ = 0.;
     InertiaEllipsoid         ellipsoid_{};
     std::unique_ptr<Results> results_;
   };
