@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <string>
 #include <utility>
 
 namespace tanktread
@@ -104,6 +105,7 @@ namespace tanktread
     State        next;
     const double wanted = std::min(next_length_, end_time_ - time), shortest = std::min(wanted, 1e-3 * parameters_.step);
     bool         first_attempt = true;
+    std::string  failure;
     for (result.length = wanted; result.length >= shortest;)
       {
         NewtonReport report;
@@ -116,13 +118,18 @@ namespace tanktread
             }
         first_attempt = false;
         if (!report.converged)
-          result.length *= 0.5;
+          {
+            failure = report.message;
+            result.length *= 0.5;
+          }
         else if (accept_step(state, time, result.length, next))
           return result;
         else
           result.length = next_length_;
       }
-    throw NumericalError("No time step between " + std::to_string(shortest) + " and " + std::to_string(wanted) + " could be solved.");
+    std::ostringstream message;
+    message << "No time step between " << shortest << " and " << wanted << " could be solved; the last attempt: " << failure << '.';
+    throw NumericalError(message.str());
   }
 
 
