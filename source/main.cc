@@ -56,7 +56,9 @@ main(int argc, char *argv[])
   try
     {
       // Exceptions are turned into exit codes while MPI is still initialised: the ranks have to agree on how to end. One thread a rank.
-      const std::vector<std::string>                 words(argv + 1, argv + argc);
+      const std::vector<std::string> words(argv + 1, argv + argc);
+      argc    = 1; // PETSc would take our options for its own: deal.II initialises it even if it is not used.
+      argv[1] = nullptr;
       const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
       return tanktread::exit_code_of(MPI_COMM_WORLD, [&words] { work(words); });
     }
