@@ -36,6 +36,8 @@ namespace tanktread
                                                     "newton_iterations",
                                                     "linear_iterations",
                                                     "wall_time",
+                                                    "alpha",
+                                                    "delta",
                                                     "pressure_jump",
                                                     "step",
                                                     "cells"};
@@ -97,6 +99,8 @@ namespace tanktread
                                      double(o.newton_iterations),
                                      double(o.linear_iterations),
                                      o.wall_time,
+                                     o.alpha,
+                                     o.delta,
                                      o.pressure_jump,
                                      o.step,
                                      o.n_cells};

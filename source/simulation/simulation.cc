@@ -162,11 +162,16 @@ namespace tanktread
     const Timings::Scope scope(timings_, "Output");
     Observables          o = observe(view_, fluid_, state_);
     ellipsoid_             = o.ellipsoid;
-    o.time                 = time_;
-    o.step                 = step.length;
-    o.newton_iterations    = step.newton_iterations;
-    o.linear_iterations    = step.linear_iterations;
-    o.wall_time            = timings_.elapsed();
+    if (!phase_)
+      phase_ = std::make_unique<PhaseAngles>(shape_.topology, state_.x, o.ellipsoid, o.theta_over_pi);
+    phase_->update(state_.x, o.ellipsoid, o.theta_over_pi);
+    o.alpha             = phase_->alpha();
+    o.delta             = phase_->delta();
+    o.time              = time_;
+    o.step              = step.length;
+    o.newton_iterations = step.newton_iterations;
+    o.linear_iterations = step.linear_iterations;
+    o.wall_time         = timings_.elapsed();
     const bool first = n_steps_ == 0, fields_wanted = parameters_.output.field_interval > 0.;
     if (is_due(next_history_, parameters_.output.history_interval) || last)
       results_->add_history(o);

@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Part of Tanktread: tests of the surface's VTU files and their time series.
+// Part of Tanktread: tests of the surface's VTU files and their time series, and of the phase angles.
 
 #include <tanktread/base/exceptions.h>
+#include <tanktread/simulation/phase_angles.h>
 #include <tanktread/simulation/surface_vtu.h>
+#include <tanktread/surface/capsule_shape.h>
+#include <tanktread/surface/subdivision_surface.h>
+
+#include <Eigen/LU>
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -167,4 +173,48 @@ TEST_F(Output, PvdIsCompleteAfterEachEntry)
   for (const auto &left_over : std::filesystem::directory_iterator(folder))
     EXPECT_EQ(left_over.path().filename(), "capsule.pvd");
   EXPECT_THROW(PvdFile(path("no_such_folder/c.pvd")).add(0, "c.vtu"), InputError);
+}
+
+
+TEST(PhaseAngles, FollowsTheMaterialAndTheShapeRoundAndRound)
+{
+  // An ellipsoid whose shape tumbles by 0.11 pi a step while its material turns by -0.4 pi: both beyond a full turn.
+  CapsuleShapeParameters parameters;
+  parameters.shape               = Shape::ellipsoid;
+  parameters.axes                = {{2., 1.5, 1.}};
+  const FittedShape     shape    = make_capsule(parameters, 2);
+  const SparseMatrix    limit    = vertex_limit_stencils(shape.topology);
+  const Eigen::MatrixXd inverse  = Eigen::MatrixXd(limit).inverse(); // control points from limit positions
+  const Eigen::Vector3d axes     = std::cbrt(1. / 3.) * Eigen::Vector3d(2., 1.5, 1.);
+  const ControlPoints   start_at = limit * shape.control_points;
+
+  // Material points of the unit sphere turn by alpha - theta, are mapped to the ellipsoid, and that turns by theta.
+  const auto control_points = [&](const double theta, const double alpha) -> ControlPoints {
+    ControlPoints x(start_at.rows(), 3);
+    for (Eigen::Index i = 0; i < x.rows(); ++i)
+      {
+        const double sx = start_at(i, 0) / axes[0], sz = start_at(i, 2) / axes[2], phase = M_PI * (alpha - theta);
+        const double u = axes[0] * (std::cos(phase) * sx - std::sin(phase) * sz), w = axes[2] * (std::sin(phase) * sx + std::cos(phase) * sz);
+        x.row(i) << std::cos(M_PI * theta) * u - std::sin(M_PI * theta) * w, start_at(i, 1), std::sin(M_PI * theta) * u + std::cos(M_PI * theta) * w;
+      }
+    return inverse * x;
+  };
+  InertiaEllipsoid ellipsoid{};
+  ellipsoid.centroid.setZero();
+  PhaseAngles  phase(shape.topology, control_points(0., 0.), ellipsoid, 0.);
+  const double start = phase.alpha();
+  EXPECT_NEAR(phase.delta(), 0., 1e-15);
+  for (int step = 1; step <= 12; ++step)
+    {
+      phase.update(control_points(0.11 * step, -0.4 * step), ellipsoid, std::remainder(0.11 * step, 1.));
+      EXPECT_NEAR(phase.delta() - (phase.alpha() - start), -0.11 * step, 1e-12);
+      // On an ellipse the polar angle runs ahead of and behind the material's phase, by less than a quarter turn.
+      EXPECT_NEAR(phase.alpha() - start, -0.4 * step, 0.25);
+    }
+
+  // Round at first: the phase counts from the first time that the section has a direction.
+  PhaseAngles round(shape.topology, control_points(0., 0.), ellipsoid, std::nan(""));
+  EXPECT_TRUE(std::isnan(round.delta()));
+  round.update(control_points(0., -0.1), ellipsoid, 0.2);
+  EXPECT_EQ(round.delta(), 0.);
 }

@@ -25,8 +25,9 @@ namespace tanktread
     double           theta_over_pi = 0.; // inclination in units of pi; not a number while the section is round
     double           volume = 0., volume_error = 0., area = 0.;
     Shell::Energy    energy{};
-    double           dissipation       = 0.; // mu times the integral of |grad u|^2, u the disturbance velocity
-    double           pressure_jump     = 0.;
+    double           dissipation   = 0.; // mu times the integral of |grad u|^2, u the disturbance velocity
+    double           pressure_jump = 0.;
+    double           alpha = 0., delta = 0.; // see PhaseAngles
     double           step              = 0.;
     unsigned int     newton_iterations = 0, linear_iterations = 0;
     double           n_cells   = 0.;

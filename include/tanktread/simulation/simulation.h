@@ -7,6 +7,7 @@
 #include <tanktread/base/log.h>
 #include <tanktread/base/timings.h>
 #include <tanktread/simulation/parameters.h>
+#include <tanktread/simulation/phase_angles.h>
 #include <tanktread/simulation/results.h>
 #include <tanktread/simulation/time_stepper.h>
 
@@ -43,27 +44,28 @@ namespace tanktread
     void
     record(const StepResult &step, bool last);
 
-    const Parameters        &parameters_;
-    MPI_Comm                 communicator_;
-    bool                     first_rank_;
-    Timings                  timings_;
-    Log                      log_;
-    FittedShape              shape_;
-    SubdivisionSurface       surface_;
-    Shell                    shell_;
-    Fluid                    fluid_;
-    SubdivisionSurface       coupling_surface_;
-    Coupling                 coupling_;
-    ShellView                view_;
-    UndisturbedFlow          flow_;
-    NewtonSolver             solver_;
-    TimeStepper              stepper_;
-    State                    state_;
-    double                   time_    = 0.;
-    unsigned int             n_steps_ = 0, n_quiet_steps_ = 0, remeshing_iterations_ = 0;
-    double                   next_fields_, next_history_ = 0.;
-    InertiaEllipsoid         ellipsoid_{};
-    std::unique_ptr<Results> results_;
+    const Parameters            &parameters_;
+    MPI_Comm                     communicator_;
+    bool                         first_rank_;
+    Timings                      timings_;
+    Log                          log_;
+    FittedShape                  shape_;
+    SubdivisionSurface           surface_;
+    Shell                        shell_;
+    Fluid                        fluid_;
+    SubdivisionSurface           coupling_surface_;
+    Coupling                     coupling_;
+    ShellView                    view_;
+    UndisturbedFlow              flow_;
+    NewtonSolver                 solver_;
+    TimeStepper                  stepper_;
+    State                        state_;
+    double                       time_    = 0.;
+    unsigned int                 n_steps_ = 0, n_quiet_steps_ = 0, remeshing_iterations_ = 0;
+    double                       next_fields_, next_history_ = 0.;
+    std::unique_ptr<PhaseAngles> phase_; // from the first record on
+    InertiaEllipsoid             ellipsoid_{};
+    std::unique_ptr<Results>     results_;
   };
 } // namespace tanktread
 
