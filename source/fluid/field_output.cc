@@ -82,12 +82,12 @@ namespace tanktread
 
     using Interpretation = dealii::DataComponentInterpretation::DataComponentInterpretation;
     dealii::DataOut<3> output;
+    output.attach_triangulation(space.mesh.triangulation());
     output.add_data_vector(vector_dofs,
                            velocity,
                            std::vector<std::string>(3, "velocity"),
                            std::vector<Interpretation>(3, dealii::DataComponentInterpretation::component_is_part_of_vector));
     output.add_data_vector(space.pressure.dofs(), pressure, "pressure");
-    output.attach_triangulation(space.mesh.triangulation());
     output.add_data_vector(rank, "rank");
     output.build_patches(2);
     return output.write_vtu_with_pvtu_record(folder + "/", name, counter, space.mesh.communicator(), 5, 1);

@@ -21,6 +21,7 @@ def arguments():
     parser.add_argument("--expect", action="append", default=[], metavar="COLUMN=VALUE,RELATIVE")
     parser.add_argument("--volume-error", type=float, default=1e-8)
     parser.add_argument("--time", type=float, help="time that the run has to reach")
+    parser.add_argument("--varies", action="append", default=[], metavar="COLUMN", help="column that must not be the same in all rows")
     parser.add_argument("--exit-code", type=int, default=0)
     parser.add_argument("--message", default="")
     return parser.parse_args()
@@ -45,6 +46,9 @@ def failures_of_history(args):
         yield f"volume error {largest}, allowed {args.volume_error}"
     if args.time is not None and rows[-1]["time"] < args.time * (1 - 1e-9):
         yield f"ended at time {rows[-1]['time']}, expected {args.time}"
+    for column in args.varies:
+        if len({row[column] for row in rows}) == 1:
+            yield f"{column} is {rows[0][column]} in all rows"
     for expectation in args.expect:
         column, _, numbers = expectation.partition("=")
         value, relative = (float(number) for number in numbers.split(","))
