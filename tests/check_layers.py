@@ -5,7 +5,7 @@
 
 Layers, each of which may include itself and those it names:
     base -> surface -> shell, base -> fluid, (shell, fluid) -> coupling -> solver -> simulation -> main
-Surface and shell know Eigen and OpenSubdiv only: no MPI and of deal.II nothing but its ParameterHandler.
+Surface and shell know Eigen, OpenSubdiv and METIS only: no MPI and of deal.II nothing but its ParameterHandler.
 """
 
 import pathlib

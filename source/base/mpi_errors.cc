@@ -69,6 +69,22 @@ namespace tanktread
       const char *const kinds[] = {"", "bad input", "numerical failure", "unexpected error"};
       std::cerr << "tanktread: " << kinds[failure.exit_code] << who << "\n" << failure.message << std::endl;
     }
+
+    /** Throws on all ranks what the failure of rank `root` says; nothing if that rank has not failed. */
+    void
+    throw_on_all_ranks(MPI_Comm communicator, const int root, Failure failure)
+    {
+      int numbers[2] = {failure.exit_code, static_cast<int>(failure.message.size())};
+      MPI_Bcast(numbers, 2, MPI_INT, root, communicator);
+      failure.message.resize(numbers[1]);
+      MPI_Bcast(&failure.message[0], numbers[1], MPI_CHAR, root, communicator);
+      if (numbers[0] == 1)
+        throw InputError(failure.message);
+      if (numbers[0] == 2)
+        throw NumericalError(failure.message);
+      if (numbers[0] != 0)
+        throw std::runtime_error(failure.message);
+    }
   } // namespace
 
   void
@@ -79,16 +95,20 @@ namespace tanktread
     Failure failure;
     if (rank == 0)
       failure = failure_of(work);
-    int numbers[2] = {failure.exit_code, static_cast<int>(failure.message.size())};
-    MPI_Bcast(numbers, 2, MPI_INT, 0, communicator);
-    failure.message.resize(numbers[1]);
-    MPI_Bcast(&failure.message[0], numbers[1], MPI_CHAR, 0, communicator);
-    if (numbers[0] == 1)
-      throw InputError(failure.message);
-    if (numbers[0] == 2)
-      throw NumericalError(failure.message);
-    if (numbers[0] != 0)
-      throw std::runtime_error(failure.message);
+    throw_on_all_ranks(communicator, 0, failure);
+  }
+
+  void
+  on_all_ranks(MPI_Comm communicator, const std::function<void()> &work)
+  {
+    int rank, n_ranks;
+    MPI_Comm_rank(communicator, &rank);
+    MPI_Comm_size(communicator, &n_ranks);
+    const Failure failure = failure_of(work);
+    int           first   = failure.exit_code == 0 ? n_ranks : rank;
+    MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, communicator);
+    if (first < n_ranks)
+      throw_on_all_ranks(communicator, first, failure);
   }
 
   int

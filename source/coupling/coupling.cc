@@ -1,52 +1,105 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: interpolation of the fluid's velocity to the shell and spreading of the shell's forces to the fluid, each the other's adjoint.
 
-#include <tanktread/base/exceptions.h>
+#include <deal.II/base/mpi.h>
+
+#include <tanktread/base/vector4.h>
 #include <tanktread/coupling/coupling.h>
 #include <tanktread/surface/surface_geometry.h>
 #include <tanktread/surface/surface_operators.h>
 
-#include <cmath>
+#include <array>
+#include <stdexcept>
+#include <string>
 
 namespace tanktread
 {
   namespace
   {
-    std::vector<double>
-    as_vector(const ControlPoints &values)
+    /** Fields on the control points, evaluated at points of one face at a time. */
+    template <unsigned int n_fields>
+    class FaceValues
     {
-      return {values.data(), values.data() + values.size()};
-    }
+    public:
+      /** `memory` for n_fields vectors at each of the control points that a face depends on. */
+      FaceValues(const SubdivisionSurface &surface, const std::array<const ControlPoints *, n_fields> &fields, std::vector<Vector4> &memory)
+        : surface_(surface)
+        , fields_(fields)
+        , memory_(memory)
+      {
+        memory_.resize(n_fields * surface.support_size());
+      }
+
+      void
+      reinit(const unsigned int face)
+      {
+        const int *const support = surface_.support(face);
+        for (unsigned int i = 0; i < surface_.support_size(); ++i)
+          for (unsigned int k = 0; k < n_fields; ++k)
+            memory_[n_fields * i + k] = Vector4(fields_[k]->data() + 3 * support[i]);
+      }
+
+      /** Values at a quadrature point of the face. */
+      std::array<Vector4, n_fields>
+      at(const unsigned int q) const
+      {
+        const double *const           N      = surface_.stencils(q);
+        const Vector4 *const          values = memory_.data();
+        std::array<Vector4, n_fields> result;
+        for (unsigned int i = 0; i < surface_.support_size(); ++i)
+          for (unsigned int k = 0; k < n_fields; ++k)
+            result[k] += N[i] * values[n_fields * i + k];
+        return result;
+      }
+
+    private:
+      const SubdivisionSurface                         &surface_;
+      const std::array<const ControlPoints *, n_fields> fields_;
+      std::vector<Vector4>                             &memory_;
+    };
   } // namespace
 
 
   Coupling::Coupling(const SubdivisionSurface &surface, Eigen::VectorXd reference_weights)
     : surface_(surface)
     , weights_(std::move(reference_weights))
-    , S_transposed_(surface.S().transpose())
     , mass_(mass_matrix(surface, weights_))
-    , mass_factorisation_(mass_)
-  {
-    if (mass_factorisation_.info() != Eigen::Success)
-      throw NumericalError("The shell's mass matrix is singular: the control mesh has degenerate faces or too few quadrature points.");
-  }
+    , mass_inverse_(mass_)
+  {}
 
 
   void
   Coupling::attach(const TaylorHoodSpace &space)
   {
+    communicator_  = space.mesh.communicator();
     interpolation_ = std::make_unique<PointInterpolation>(space);
+    local_faces_.clear();
+  }
+
+
+  void
+  Coupling::set_points(const ControlPoints &x, std::vector<dealii::Point<3>> &points) const
+  {
+    const unsigned int n_q = surface_.n_points_per_face();
+    FaceValues<1>      positions(surface_, {&x}, face_);
+    points.resize(surface_.n_points());
+    for (unsigned int face = 0; face < surface_.n_faces(); ++face)
+      {
+        positions.reinit(face);
+        for (unsigned int q = face * n_q; q < (face + 1) * n_q; ++q)
+          {
+            const auto value = positions.at(q)[0];
+            points[q]        = dealii::Point<3>(value[0], value[1], value[2]);
+          }
+      }
   }
 
 
   std::vector<dealii::Point<3>>
   Coupling::points(const ControlPoints &x) const
   {
-    const ControlPoints           positions = surface_.S() * x;
     std::vector<dealii::Point<3>> result;
-    result.reserve(positions.rows());
-    for (Eigen::Index q = 0; q < positions.rows(); ++q)
-      result.emplace_back(positions(q, 0), positions(q, 1), positions(q, 2));
+    set_points(x, result);
     return result;
   }
 
@@ -54,98 +107,164 @@ namespace tanktread
   void
   Coupling::move(const ControlPoints &x)
   {
-    interpolation_->reinit(points(x));
-  }
+    set_points(x, points_);
+    interpolation_->reinit(points_);
 
-
-  ControlPoints
-  Coupling::moments(const ControlPoints &values) const
-  {
-    return S_transposed_ * (weights_.asDiagonal() * values);
+    const auto &local = interpolation_->local_points();
+    local_faces_.clear();
+    for (unsigned int r = 0; r < local.size(); ++r)
+      {
+        const unsigned int face = local[r] / surface_.n_points_per_face();
+        if (local_faces_.empty() || local_faces_.back().face != face)
+          local_faces_.push_back({face, r, r});
+        ++local_faces_.back().end;
+      }
   }
 
 
   ControlPoints
   Coupling::velocity_moments(const FluidBlockVector &u) const
   {
-    std::vector<double> values;
-    interpolation_->values(u, values);
-    return moments(Eigen::Map<const ControlPoints>(values.data(), surface_.n_points(), 3));
+    interpolation_->values(u, values_);
+    const auto        &local  = interpolation_->local_points();
+    const unsigned int n      = surface_.support_size();
+    ControlPoints      result = ControlPoints::Zero(surface_.n_control_points(), 3);
+    for (const auto &[face, begin, end] : local_faces_)
+      {
+        const int *const support = surface_.support(face);
+        face_.clear();
+        for (unsigned int r = begin; r < end; ++r)
+          face_.push_back(weights_[local[r]] * Vector4(&values_[3 * r]));
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            Vector4 sum;
+            for (unsigned int r = begin; r < end; ++r)
+              sum += surface_.stencils(local[r])[i] * face_[r - begin];
+            double *const row = result.data() + 3 * support[i];
+            (Vector4(row) + sum).store(row);
+          }
+      }
+    MPI_Allreduce(MPI_IN_PLACE, result.data(), int(result.size()), MPI_DOUBLE, MPI_SUM, communicator_);
+    return result;
   }
 
 
   ControlPoints
   Coupling::interpolate(const FluidBlockVector &u) const
   {
-    return mass_factorisation_.solve(velocity_moments(u));
+    return density(velocity_moments(u));
   }
 
 
   VelocityGradients
   Coupling::velocity_gradients(const FluidBlockVector &u) const
   {
-    std::vector<double> values, gradients;
-    interpolation_->values_and_gradients(u, values, gradients);
-    return Eigen::Map<const VelocityGradients>(gradients.data(), surface_.n_points(), 9);
+    interpolation_->gradients(u, moments_);
+    return Eigen::Map<const VelocityGradients>(moments_.data(), n_local_points(), 9);
   }
 
 
   ControlPoints
   Coupling::density(const ControlPoints &f) const
   {
-    return mass_factorisation_.solve(f);
+    ControlPoints result;
+    mass_inverse_.solve(f, result);
+    return result;
   }
 
 
   void
   Coupling::spread(const ControlPoints &f, FluidBlockVector &load) const
   {
-    const ControlPoints forces = weights_.asDiagonal() * (surface_.S() * density(f));
-    interpolation_->add_load(as_vector(forces), {}, load);
+    mass_inverse_.solve(f, density_);
+    const auto   &local = interpolation_->local_points();
+    FaceValues<1> density(surface_, {&density_}, face_);
+    values_.resize(3 * local.size());
+    for (const auto &[face, begin, end] : local_faces_)
+      {
+        density.reinit(face);
+        for (unsigned int r = begin; r < end; ++r)
+          {
+            const auto value = density.at(local[r])[0];
+            (weights_[local[r]] * value).store(&values_[3 * r]);
+          }
+      }
+    interpolation_->add_load(values_, {}, load);
   }
 
 
   void
   Coupling::spread_with_motion(const ControlPoints &f, const ControlPoints &dx, const ControlPoints &g, FluidBlockVector &load) const
   {
-    const ControlPoints forces  = weights_.asDiagonal() * (surface_.S() * density(f));
-    const ControlPoints density = weights_.asDiagonal() * (surface_.S() * g);
-    const ControlPoints motion  = surface_.S() * dx;
-    std::vector<double> moments(9 * surface_.n_points());
-    for (unsigned int q = 0; q < surface_.n_points(); ++q)
-      for (unsigned int c = 0; c < 3; ++c)
-        for (unsigned int d = 0; d < 3; ++d)
-          moments[9 * q + 3 * c + d] = density(q, c) * motion(q, d);
-    interpolation_->add_load(as_vector(forces), moments, load);
+    mass_inverse_.solve(f, density_);
+    const auto   &local = interpolation_->local_points();
+    FaceValues<3> fields(surface_, {&density_, &g, &dx}, face_);
+    values_.resize(3 * local.size());
+    moments_.resize(9 * local.size());
+    for (const auto &[face, begin, end] : local_faces_)
+      {
+        fields.reinit(face);
+        for (unsigned int r = begin; r < end; ++r)
+          {
+            const auto [density, moment, motion] = fields.at(local[r]);
+            (weights_[local[r]] * density).store(&values_[3 * r]);
+            const Vector4 weighted = weights_[local[r]] * moment;
+            for (unsigned int c = 0; c < 3; ++c)
+              (weighted[c] * motion).store(&moments_[9 * r + 3 * c]);
+          }
+      }
+    interpolation_->add_load(values_, moments_, load);
   }
 
 
-  SparseMatrix
-  Coupling::gradient_matrix(const VelocityGradients &gradients) const
+  void
+  Coupling::add_gradients(const FacePoints &points, const VelocityGradients &gradients, double *const matrix_values) const
   {
+    const unsigned int     n       = surface_.support_size();
     const AssemblyPattern &pattern = surface_.pattern();
-    const unsigned int     n = surface_.support_size(), n_q = surface_.n_points_per_face();
-    SparseMatrix           result = pattern.block_matrix();
-    double *const          values = result.valuePtr();
-    for (unsigned int face = 0; face < surface_.n_faces(); ++face)
-      {
-        const int *const support = surface_.support(face), *const places = pattern.places(face);
-        for (unsigned int q = face * n_q; q < (face + 1) * n_q; ++q)
-          {
-            const double *const N = surface_.stencils(q);
-            for (unsigned int i = 0; i < n; ++i)
-              for (unsigned int j = 0; j < n; ++j)
-                {
-                  const double  weight = weights_[q] * N[i] * N[j];
-                  const int     length = pattern.row_length(support[i]);
-                  double *const entry  = values + 9 * pattern.row_start(support[i]) + 3 * places[i * n + j];
-                  for (unsigned int c = 0; c < 3; ++c)
-                    for (unsigned int d = 0; d < 3; ++d)
-                      entry[3 * c * length + d] += weight * gradients(q, 3 * c + d);
-                }
-          }
-      }
-    return result;
+    const auto            &local   = interpolation_->local_points();
+    const int *const support = surface_.support(points.face), *const places = pattern.places(points.face);
+    const auto add = [&](const unsigned int i, const unsigned int j, const std::array<Vector4, 3> &block) {
+      const int length = pattern.row_length(support[i]);
+      double   *entry  = matrix_values + 9 * pattern.row_start(support[i]) + 3 * places[i * n + j];
+      for (unsigned int c = 0; c < 3; ++c, entry += 3 * length)
+        (Vector4(entry) + block[c]).store(entry);
+    };
+    face_.clear();
+    for (unsigned int r = points.begin; r < points.end; ++r)
+      for (unsigned int c = 0; c < 3; ++c)
+        face_.push_back(weights_[local[r]] * Vector4(&gradients(r, 3 * c)));
+    for (unsigned int i = 0; i < n; ++i)
+      for (unsigned int j = 0; j <= i; ++j)
+        {
+          std::array<Vector4, 3> block;
+          for (unsigned int r = points.begin; r < points.end; ++r)
+            {
+              const double *const N       = surface_.stencils(local[r]);
+              const double        product = N[i] * N[j];
+              for (unsigned int c = 0; c < 3; ++c)
+                block[c] += product * face_[3 * (r - points.begin) + c];
+            }
+          add(i, j, block);
+          if (i != j)
+            add(j, i, block);
+        }
+  }
+
+
+  void
+  Coupling::gradient_matrix(const VelocityGradients &gradients, SparseMatrix &result) const
+  {
+    if (gradients.rows() != Eigen::Index(n_local_points()))
+      throw std::logic_error("gradient_matrix() got gradients at " + std::to_string(gradients.rows()) + " points instead of the " +
+                             std::to_string(n_local_points()) + " points of this rank.");
+    if (result.nonZeros() == surface_.pattern().n_block_entries())
+      result.coeffs().setZero();
+    else
+      result = surface_.pattern().block_matrix();
+    for (const FacePoints &points : local_faces_)
+      add_gradients(points, gradients, result.valuePtr());
+    MPI_Allreduce(MPI_IN_PLACE, result.valuePtr(), int(result.nonZeros()), MPI_DOUBLE, MPI_SUM, communicator_);
   }
 
 

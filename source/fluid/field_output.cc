@@ -2,7 +2,9 @@
 // Part of Tanktread: the fluid's fields as VTU.
 
 #include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_system.h>
+#include <deal.II/fe/fe_tools.h>
 #include <deal.II/numerics/data_out.h>
 
 #include <tanktread/fluid/field_output.h>
@@ -11,51 +13,74 @@ namespace tanktread
 {
   namespace
   {
+    /** Zero field on `dofs`, ghosts included. */
+    FluidVector
+    field(const dealii::DoFHandler<3> &dofs, const MPI_Comm communicator)
+    {
+      return {dofs.locally_owned_dofs(), dealii::DoFTools::extract_locally_relevant_dofs(dofs), communicator};
+    }
+
+
+    dealii::AlignedVector<double>
+    full_array(const NodeSpace &space, const FluidVector &vector)
+    {
+      dealii::AlignedVector<double> result(space.full_size());
+      space.load(vector, result.data());
+      space.update(result.data());
+      return result;
+    }
+
+
     /** Total velocity as one vector-valued field, because ParaView draws glyphs and streamlines of vectors only. */
     FluidVector
-    total_velocity(const TaylorHoodSpace &space, const FluidBlockVector &fields, const double shear_rate, const dealii::DoFHandler<3> &vector_dofs)
+    total_velocity(const TaylorHoodSpace &space, const FluidBlockVector &fields, const double shear_rate, const dealii::DoFHandler<3> &dofs)
     {
-      FluidVector result(vector_dofs.locally_owned_dofs(), dealii::DoFTools::extract_locally_relevant_dofs(vector_dofs), space.mesh.communicator());
-      const auto &fe = vector_dofs.get_fe();
-      std::vector<dealii::types::global_dof_index> scalar(27), vector(81);
-      for (unsigned int c = 0; c < 3; ++c)
-        {
-          FluidVector component(fields.block(c));
-          space.velocity.constraints().distribute(component);
-          component.update_ghost_values();
-          for (const auto &cell : space.velocity.dofs().active_cell_iterators())
-            if (cell->is_locally_owned())
-              {
-                cell->get_dof_indices(scalar);
-                dealii::DoFHandler<3>::active_cell_iterator(&space.mesh.triangulation(), cell->level(), cell->index(), &vector_dofs)->get_dof_indices(vector);
-                for (unsigned int a = 0; a < 27; ++a)
-                  {
-                    const auto   i = vector[fe.component_to_system_index(c, a)];
-                    const double z = cell->vertex(0)[2] + space.mesh.cell_size(cell->level()) * space.velocity.dofs().get_fe().unit_support_point(a)[2];
-                    if (result.locally_owned_elements().is_element(i))
-                      result(i) = component(scalar[a]) + (c == 0 ? shear_rate * z : 0.);
-                  }
-              }
-        }
+      const NodeSpace                             &nodes  = *space.velocity;
+      const dealii::AlignedVector<double>          values = full_array(nodes, fields.block(velocity_block));
+      const auto                                   order  = dealii::FETools::lexicographic_to_hierarchic_numbering<3>(2);
+      const auto                                  &fe     = dofs.get_fe();
+      FluidVector                                  result = field(dofs, space.mesh.communicator());
+      std::vector<dealii::types::global_dof_index> indices(81);
+      unsigned int                                 number = 0;
+      for (const auto &cell : dofs.active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            const unsigned int *const cell_nodes = nodes.cell_nodes(number);
+            const double              h          = nodes.cell_sizes()[number++];
+            cell->get_dof_indices(indices);
+            for (unsigned int a = 0; a < 27; ++a)
+              for (unsigned int c = 0; c < 3; ++c)
+                {
+                  const auto   i = indices[fe.component_to_system_index(c, order[a])];
+                  const double z = cell->vertex(0)[2] + 0.5 * h * (a / 9);
+                  if (result.locally_owned_elements().is_element(i))
+                    result(i) = values[nodes.stride() * cell_nodes[a] + c] + (c == 0 ? shear_rate * z : 0.);
+                }
+          }
       result.update_ghost_values();
       return result;
     }
 
 
     FluidVector
-    total_pressure(const TaylorHoodSpace &space, const FluidBlockVector &fields, const std::function<double(const dealii::Point<3> &)> &further_pressure)
+    total_pressure(const TaylorHoodSpace                                 &space,
+                   const FluidBlockVector                                &fields,
+                   const std::function<double(const dealii::Point<3> &)> &further_pressure,
+                   const dealii::DoFHandler<3>                           &dofs)
     {
-      FluidVector continuous(fields.block(pressure_block));
-      space.pressure.constraints().distribute(continuous);
-      FluidVector                                  result(continuous);
+      const NodeSpace                             &nodes  = *space.pressure;
+      const dealii::AlignedVector<double>          values = full_array(nodes, fields.block(pressure_block));
+      FluidVector                                  result = field(dofs, space.mesh.communicator());
       std::vector<dealii::types::global_dof_index> indices(8);
-      for (const auto &cell : space.pressure.dofs().active_cell_iterators())
+      unsigned int                                 number = 0;
+      for (const auto &cell : dofs.active_cell_iterators())
         if (cell->is_locally_owned())
           {
-            cell->get_dof_indices(indices);
+            const unsigned int *const cell_nodes = nodes.cell_nodes(number++);
+            cell->get_dof_indices(indices); // of linear functions: one a vertex, in the same order as ours
             for (unsigned int v = 0; v < 8; ++v)
               if (result.locally_owned_elements().is_element(indices[v]))
-                result(indices[v]) = continuous(indices[v]) + further_pressure(cell->vertex(v));
+                result(indices[v]) = values[cell_nodes[v]] + further_pressure(cell->vertex(v));
           }
       result.update_ghost_values();
       return result;
@@ -72,24 +97,29 @@ namespace tanktread
                      const double                                           shear_rate,
                      const std::function<double(const dealii::Point<3> &)> &further_pressure)
   {
-    const dealii::FESystem<3> fe(space.velocity.dofs().get_fe(), 3);
-    dealii::DoFHandler<3>     vector_dofs(space.mesh.triangulation());
-    vector_dofs.distribute_dofs(fe);
-    const FluidVector     velocity = total_velocity(space, fields, shear_rate, vector_dofs);
-    const FluidVector     pressure = total_pressure(space, fields, further_pressure);
+    const dealii::FESystem<3> velocity_fe(dealii::FE_Q<3>(2), 3);
+    const dealii::FE_Q<3>     pressure_fe(1);
+    dealii::DoFHandler<3>     velocity_dofs(space.mesh.triangulation()), pressure_dofs(space.mesh.triangulation());
+    velocity_dofs.distribute_dofs(velocity_fe);
+    pressure_dofs.distribute_dofs(pressure_fe);
+    const FluidVector     velocity = total_velocity(space, fields, shear_rate, velocity_dofs);
+    const FluidVector     pressure = total_pressure(space, fields, further_pressure, pressure_dofs);
     dealii::Vector<float> rank(space.mesh.triangulation().n_active_cells());
     rank = space.mesh.triangulation().locally_owned_subdomain();
 
     using Interpretation = dealii::DataComponentInterpretation::DataComponentInterpretation;
     dealii::DataOut<3> output;
     output.attach_triangulation(space.mesh.triangulation());
-    output.add_data_vector(vector_dofs,
+    output.add_data_vector(velocity_dofs,
                            velocity,
                            std::vector<std::string>(3, "velocity"),
                            std::vector<Interpretation>(3, dealii::DataComponentInterpretation::component_is_part_of_vector));
-    output.add_data_vector(space.pressure.dofs(), pressure, "pressure");
+    output.add_data_vector(pressure_dofs, pressure, "pressure");
     output.add_data_vector(rank, "rank");
     output.build_patches(2);
+    dealii::DataOutBase::VtkFlags flags;
+    flags.compression_level = decltype(flags.compression_level)::best_speed; // the default spends more time than the flow takes to compute
+    output.set_flags(flags);
     return output.write_vtu_with_pvtu_record(folder + "/", name, counter, space.mesh.communicator(), 5, 1);
   }
 } // namespace tanktread

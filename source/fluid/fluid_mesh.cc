@@ -27,11 +27,22 @@ namespace tanktread
     : communicator_(communicator)
     , side_(side)
     , band_width_(parameters.band_width)
-    , n_coarse_(std::max(2, static_cast<int>(std::lround(side / parameters.coarsest_cell))))
-    , finest_level_(std::max(0., std::ceil(std::log2(side / n_coarse_ / parameters.finest_cell) - 1e-9)))
+    , n_rung_0_(std::max(2, static_cast<int>(std::lround(side / parameters.coarsest_cell))))
     , triangulation_(communicator, Triangulation::limit_level_difference_at_vertices)
   {
-    dealii::GridGenerator::subdivided_hyper_cube(triangulation_, n_coarse_, -0.5 * side, 0.5 * side, true);
+    for (; n_rung_0_ > 4 && n_rung_0_ % 2 == 0; n_rung_0_ /= 2)
+      ++coarsest_level_;
+    finest_level_ = std::max<double>(coarsest_level_, std::ceil(std::log2(side / n_rung_0_ / parameters.finest_cell) - 1e-9));
+    restart();
+  }
+
+
+  void
+  FluidMesh::restart()
+  {
+    rung_ = 0;
+    triangulation_.clear();
+    dealii::GridGenerator::subdivided_hyper_cube(triangulation_, n_rung_0_, -0.5 * side_, 0.5 * side_, true);
 
     // p4est keeps the 2:1 balance across the periodic faces only if it knows of them before any refinement.
     std::vector<dealii::GridTools::PeriodicFacePair<Triangulation::cell_iterator>> faces;
@@ -44,14 +55,14 @@ namespace tanktread
   double
   FluidMesh::cell_size(const unsigned int level) const
   {
-    return side_ / n_coarse_ / (1 << level);
+    return side_ / n_rung_0_ / (1 << level);
   }
 
 
   FluidMesh::Place
   FluidMesh::place(const dealii::Point<3> &point, const unsigned int level) const
   {
-    const int n = n_coarse_ << level;
+    const int n = n_rung_0_ << level;
     Place     result;
     result.key.level = level;
     for (unsigned int d = 0; d < 3; ++d)
@@ -78,7 +89,7 @@ namespace tanktread
   FluidMesh::KeySet
   FluidMesh::wanted_cells(const std::vector<dealii::Point<3>> &points, const double band) const
   {
-    const int  n = n_coarse_ << finest_level_;
+    const int  n = n_rung_0_ << finest_level_;
     KeySet     result;
     const auto insert_with_ancestors = [&](CellKey cell) {
       while (result.insert(cell.packed()).second && cell.level > 0)
@@ -108,38 +119,36 @@ namespace tanktread
 
 
   bool
+  FluidMesh::aim_at(const std::vector<dealii::Point<3>> &points)
+  {
+    KeySet     wanted = wanted_cells(points, band_width_);
+    const bool other  = !aimed_ || wanted != wanted_;
+    aimed_            = true;
+    wanted_           = std::move(wanted);
+    return other;
+  }
+
+
+  void
+  FluidMesh::climb()
+  {
+    for (const auto &cell : triangulation_.active_cell_iterators())
+      if (cell->is_locally_owned() && static_cast<unsigned int>(cell->level()) == rung_ && (rung_ < coarsest_level_ || wanted_.count(key(cell).packed())))
+        cell->set_refine_flag();
+    triangulation_.execute_coarsening_and_refinement();
+    ++rung_;
+  }
+
+
+  bool
   FluidMesh::adapt(const std::vector<dealii::Point<3>> &points)
   {
-    const KeySet wanted  = wanted_cells(points, band_width_);
-    bool         changed = false;
-    // A cell is divided if it contains a wanted finest cell. p4est refines and coarsens by one level a call.
-    for (unsigned int sweep = 0; sweep <= 2 * finest_level_ + 2; ++sweep)
-      {
-        for (const auto &cell : triangulation_.active_cell_iterators())
-          if (cell->is_locally_owned())
-            {
-              const unsigned int level = cell->level();
-              CellKey            k     = key(cell);
-              if (level < finest_level_ && wanted.count(k.packed()))
-                cell->set_refine_flag();
-              else if (level > 0)
-                {
-                  --k.level;
-                  for (int &i : k.position)
-                    i >>= 1;
-                  if (!wanted.count(k.packed()))
-                    cell->set_coarsen_flag();
-                }
-            }
-        const auto checksum = triangulation_.get_checksum();
-        triangulation_.execute_coarsening_and_refinement();
-        // The checksum lives on rank 0 only.
-        const bool same = dealii::Utilities::MPI::broadcast(communicator_, checksum == triangulation_.get_checksum(), 0);
-        if (same)
-          return changed;
-        changed = true;
-      }
-    throw NumericalError("The fluid mesh did not settle around the shell.");
+    if (!aim_at(points))
+      return false;
+    restart();
+    while (!on_last_rung())
+      climb();
+    return true;
   }
 
 

@@ -1,192 +1,278 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: velocities and their gradients at arbitrary points, and the adjoint.
 
-#include <deal.II/fe/fe_tools.h>
+#include <deal.II/base/mpi.h>
 
 #include <tanktread/base/exceptions.h>
+#include <tanktread/base/vector4.h>
 #include <tanktread/fluid/point_interpolation.h>
 
-#include <algorithm>
-#include <cmath>
+#include <string>
 
 namespace tanktread
 {
-  CellLocator::CellLocator(const FluidMesh &mesh)
-    : mesh_(mesh)
+  namespace
   {
-    int index = 0;
-    for (const auto &cell : mesh.triangulation().active_cell_iterators())
-      if (cell->is_locally_owned())
-        {
-          cells_.emplace(mesh.key(cell).packed(), index++);
-          levels_.push_back(cell->level());
-        }
-    std::sort(levels_.begin(), levels_.end(), std::greater<unsigned int>());
-    levels_.erase(std::unique(levels_.begin(), levels_.end()), levels_.end());
-  }
+    /** Velocities or loads at the nodes of a cell: entry [3 k + j][i] for node (i, j, k). */
+    using CellValues = Vector4[9][3];
 
-
-  CellLocator::Location
-  CellLocator::locate(const dealii::Point<3> &point) const
-  {
-    Location result;
-    for (const unsigned int level : levels_)
+    /** Quadratic Lagrange polynomials with nodes 0, 1/2, 1 along the three axes, and their derivatives with respect to positions in space. */
+    struct Shapes
+    {
+      Shapes(const dealii::Point<3> &unit, const double inverse_size)
       {
-        const FluidMesh::Place place = mesh_.place(point, level);
-        const auto             found = cells_.find(place.key.packed());
-        if (found == cells_.end())
-          continue;
-        result.cell = found->second;
-        result.unit = place.unit;
-        break;
+        for (unsigned int d = 0; d < 3; ++d)
+          {
+            const double x = unit[d];
+            value[d][0]    = (1. - x) * (1. - 2. * x);
+            value[d][1]    = 4. * x * (1. - x);
+            value[d][2]    = x * (2. * x - 1.);
+            slope[d][0]    = (4. * x - 3.) * inverse_size;
+            slope[d][1]    = (4. - 8. * x) * inverse_size;
+            slope[d][2]    = (4. * x - 1.) * inverse_size;
+          }
       }
-    return result;
-  }
+
+      double value[3][3], slope[3][3];
+    };
+
+
+    /** sum_i factors[i] rows[i] */
+    inline Vector4
+    combine(const double (&factors)[3], const Vector4 (&rows)[3])
+    {
+      return factors[0] * rows[0] + factors[1] * rows[1] + factors[2] * rows[2];
+    }
+
+
+    inline void
+    evaluate(const CellValues &u, const Shapes &s, double *const value)
+    {
+      Vector4 result;
+      for (unsigned int k = 0; k < 3; ++k)
+        {
+          Vector4 plane;
+          for (unsigned int j = 0; j < 3; ++j)
+            plane += s.value[1][j] * combine(s.value[0], u[3 * k + j]);
+          result += s.value[2][k] * plane;
+        }
+      result.store(value);
+    }
+
+
+    /** The value too, unless null. */
+    inline void
+    evaluate_gradient(const CellValues &u, const Shapes &s, double *const value, double *const gradient)
+    {
+      Vector4 result, derivatives[3];
+      for (unsigned int k = 0; k < 3; ++k)
+        {
+          Vector4 plane, plane_x, plane_y;
+          for (unsigned int j = 0; j < 3; ++j)
+            {
+              const Vector4 line = combine(s.value[0], u[3 * k + j]);
+              plane += s.value[1][j] * line;
+              plane_x += s.value[1][j] * combine(s.slope[0], u[3 * k + j]);
+              plane_y += s.slope[1][j] * line;
+            }
+          derivatives[0] += s.value[2][k] * plane_x;
+          derivatives[1] += s.value[2][k] * plane_y;
+          derivatives[2] += s.slope[2][k] * plane;
+          result += s.value[2][k] * plane;
+        }
+      for (unsigned int c = 0; c < 3; ++c)
+        for (unsigned int d = 0; d < 3; ++d)
+          gradient[3 * c + d] = derivatives[d][c];
+      if (value != nullptr)
+        result.store(value);
+    }
+
+
+    /** Adds the functional v -> F . v to `load`. */
+    inline void
+    integrate(const Shapes &s, const double *const F, CellValues &load)
+    {
+      const Vector4 force(F);
+      for (unsigned int k = 0; k < 3; ++k)
+        for (unsigned int j = 0; j < 3; ++j)
+          {
+            const Vector4 line = (s.value[2][k] * s.value[1][j]) * force;
+            for (unsigned int i = 0; i < 3; ++i)
+              load[3 * k + j][i] += s.value[0][i] * line;
+          }
+    }
+
+
+    /** Adds the functional v -> F . v + G : grad v to `load`. */
+    inline void
+    integrate(const Shapes &s, const double *const F, const double *const G, CellValues &load)
+    {
+      const Vector4 force(F), g_x(G[0], G[3], G[6]), g_y(G[1], G[4], G[7]), g_z(G[2], G[5], G[8]);
+      for (unsigned int k = 0; k < 3; ++k)
+        {
+          const Vector4 plane = s.value[2][k] * force + s.slope[2][k] * g_z, plane_x = s.value[2][k] * g_x, plane_y = s.value[2][k] * g_y;
+          for (unsigned int j = 0; j < 3; ++j)
+            {
+              const Vector4 line = s.value[1][j] * plane + s.slope[1][j] * plane_y, line_x = s.value[1][j] * plane_x;
+              for (unsigned int i = 0; i < 3; ++i)
+                load[3 * k + j][i] += s.value[0][i] * line + s.slope[0][i] * line_x;
+            }
+        }
+    }
+
+
+    /** Velocities at the nodes of a cell from those at owned and ghost nodes. */
+    void
+    gather(const NodeSpace &space, const unsigned int cell, const double *const values, CellValues &result)
+    {
+      const unsigned int *const nodes = space.cell_nodes(cell);
+      for (unsigned int a = 0; a < 27; ++a)
+        {
+          Vector4 u;
+          if (space.is_free(nodes[a]))
+            u = Vector4(values + 3 * nodes[a]);
+          else
+            for (const auto &[node, weight] : space.masters(nodes[a]))
+              u += weight * Vector4(values + 3 * node);
+          result[a / 3][a % 3] = u;
+        }
+    }
+
+
+    /** The transpose: adds to owned and ghost nodes. */
+    void
+    scatter(const NodeSpace &space, const unsigned int cell, const CellValues &load, double *const values)
+    {
+      const unsigned int *const nodes = space.cell_nodes(cell);
+      for (unsigned int a = 0; a < 27; ++a)
+        {
+          const Vector4 &f = load[a / 3][a % 3];
+          if (space.is_free(nodes[a]))
+            (Vector4(values + 3 * nodes[a]) + f).store(values + 3 * nodes[a]);
+          else
+            for (const auto &[node, weight] : space.masters(nodes[a]))
+              (Vector4(values + 3 * node) + weight * f).store(values + 3 * node);
+        }
+    }
+  } // namespace
 
 
   PointInterpolation::PointInterpolation(const TaylorHoodSpace &space)
     : space_(space)
     , locator_(space.mesh)
-    , lexicographic_to_hierarchic_(dealii::FETools::lexicographic_to_hierarchic_numbering<3>(2))
-  {
-    for (const auto &cell : space.velocity.dofs().active_cell_iterators())
-      if (cell->is_locally_owned())
-        cells_.push_back(cell);
-  }
-
-
-  const PointInterpolation::ResolvedCell &
-  PointInterpolation::resolve(const int cell)
-  {
-    const auto found = resolved_.find(cell);
-    if (found != resolved_.end())
-      return found->second;
-
-    std::vector<dealii::types::global_dof_index> dofs(27);
-    cells_[cell]->get_dof_indices(dofs);
-    const auto  &constraints = space_.velocity.constraints();
-    const auto  &partitioner = *space_.velocity.partitioner();
-    ResolvedCell result;
-    for (unsigned int a = 0; a < 27; ++a)
-      {
-        const auto dof = dofs[lexicographic_to_hierarchic_[a]];
-        if (!constraints.is_constrained(dof))
-          result[a].masters.emplace_back(partitioner.global_to_local(dof), 1.);
-        else
-          for (const auto &[master, weight] : *constraints.get_constraint_entries(dof))
-            result[a].masters.emplace_back(partitioner.global_to_local(master), weight);
-      }
-    return resolved_.emplace(cell, std::move(result)).first->second;
-  }
-
-
-  namespace
-  {
-    /** Quadratic Lagrange polynomials with nodes 0, 1/2, 1 and their derivatives. */
-    void
-    lagrange(const double x, std::array<double, 3> &value, std::array<double, 3> &derivative)
-    {
-      value      = {{(1. - x) * (1. - 2. * x), 4. * x * (1. - x), x * (2. * x - 1.)}};
-      derivative = {{4. * x - 3., 4. - 8. * x, 4. * x - 1.}};
-    }
-  } // namespace
+  {}
 
 
   void
   PointInterpolation::reinit(const std::vector<dealii::Point<3>> &points)
   {
-    n_points_ = points.size();
     local_points_.clear();
-    row_start_.assign(1, 0);
-    entries_.clear();
-    for (unsigned int q = 0; q < n_points_; ++q)
+    unit_.clear();
+    cells_.clear();
+    for (unsigned int q = 0; q < points.size(); ++q)
       {
-        space_.mesh.place(points[q], 0); // throws on all ranks alike, also on those without cells
         const CellLocator::Location location = locator_.locate(points[q]);
         if (location.cell < 0)
           continue;
-        const ResolvedCell                  &cell = resolve(location.cell);
-        const double                         h    = space_.mesh.cell_size(cells_[location.cell]->level());
-        std::array<std::array<double, 3>, 3> n, dn;
-        for (unsigned int d = 0; d < 3; ++d)
-          lagrange(location.unit[d], n[d], dn[d]);
-        for (unsigned int a = 0; a < 27; ++a)
-          {
-            const unsigned int i = a % 3, j = (a / 3) % 3, k = a / 9;
-            const double       value = n[0][i] * n[1][j] * n[2][k];
-            const double       dx = dn[0][i] * n[1][j] * n[2][k] / h, dy = n[0][i] * dn[1][j] * n[2][k] / h, dz = n[0][i] * n[1][j] * dn[2][k] / h;
-            for (const auto &[index, weight] : cell[a].masters)
-              entries_.push_back({index, weight * value, {{weight * dx, weight * dy, weight * dz}}});
-          }
         local_points_.push_back(q);
-        row_start_.push_back(entries_.size());
+        unit_.push_back(location.unit);
+        cells_.push_back(location.cell);
       }
-    const unsigned int n_found = dealii::Utilities::MPI::sum(static_cast<unsigned int>(local_points_.size()), space_.mesh.communicator());
-    if (n_found != n_points_)
-      throw NumericalError("Of " + std::to_string(n_points_) + " points on the shell " + std::to_string(n_found) + " were found in the fluid mesh.");
+    const std::size_t n_found = dealii::Utilities::MPI::sum(local_points_.size(), space_.mesh.communicator());
+    if (n_found != points.size())
+      throw NumericalError("Of " + std::to_string(points.size()) + " points on the shell " + std::to_string(n_found) + " were found in the fluid mesh.");
+    sort_by_cell();
+  }
+
+
+  void
+  PointInterpolation::sort_by_cell()
+  {
+    const unsigned int n = cells_.size();
+    starts_.assign(space_.velocity->n_cells() + 1, 0);
+    for (const unsigned int cell : cells_)
+      ++starts_[cell + 1];
+    groups_.clear();
+    for (unsigned int cell = 0; cell + 1 < starts_.size(); ++cell)
+      {
+        if (starts_[cell + 1] > 0)
+          groups_.push_back({cell, starts_[cell], starts_[cell] + starts_[cell + 1]});
+        starts_[cell + 1] += starts_[cell];
+      }
+    order_.resize(n);
+    for (unsigned int r = 0; r < n; ++r)
+      order_[starts_[cells_[r]]++] = r;
+  }
+
+
+  template <typename Function>
+  void
+  PointInterpolation::for_groups(const FluidBlockVector &velocity, const Function &evaluate_at) const
+  {
+    const NodeSpace   &nodes = *space_.velocity;
+    const FluidVector &u     = velocity.block(velocity_block);
+    u.update_ghost_values();
+    CellValues local;
+    for (const Group &group : groups_)
+      {
+        gather(nodes, group.cell, u.begin(), local);
+        const double inverse_size = 1. / nodes.cell_sizes()[group.cell];
+        for (unsigned int i = group.begin; i < group.end; ++i)
+          evaluate_at(order_[i], local, Shapes(unit_[order_[i]], inverse_size));
+      }
+    u.zero_out_ghost_values();
   }
 
 
   void
   PointInterpolation::values(const FluidBlockVector &velocity, std::vector<double> &values) const
   {
-    values.assign(3 * n_points_, 0.);
-    for (unsigned int c = 0; c < 3; ++c)
-      {
-        const FluidVector &u = velocity.block(c);
-        u.update_ghost_values();
-        for (std::size_t r = 0; r < local_points_.size(); ++r)
-          {
-            double sum = 0.;
-            for (std::size_t e = row_start_[r]; e < row_start_[r + 1]; ++e)
-              sum += entries_[e].value * u.local_element(entries_[e].index);
-            values[3 * local_points_[r] + c] = sum;
-          }
-        u.zero_out_ghost_values();
-      }
-    dealii::Utilities::MPI::sum(values, space_.mesh.communicator(), values);
+    values.resize(3 * local_points_.size());
+    for_groups(velocity, [&](const unsigned int r, const CellValues &u, const Shapes &shapes) { evaluate(u, shapes, &values[3 * r]); });
+  }
+
+
+  void
+  PointInterpolation::gradients(const FluidBlockVector &velocity, std::vector<double> &gradients) const
+  {
+    gradients.resize(9 * local_points_.size());
+    for_groups(velocity, [&](const unsigned int r, const CellValues &u, const Shapes &shapes) { evaluate_gradient(u, shapes, nullptr, &gradients[9 * r]); });
   }
 
 
   void
   PointInterpolation::values_and_gradients(const FluidBlockVector &velocity, std::vector<double> &values, std::vector<double> &gradients) const
   {
-    this->values(velocity, values);
-    gradients.assign(9 * n_points_, 0.);
-    for (unsigned int c = 0; c < 3; ++c)
-      {
-        const FluidVector &u = velocity.block(c);
-        u.update_ghost_values();
-        for (std::size_t r = 0; r < local_points_.size(); ++r)
-          for (std::size_t e = row_start_[r]; e < row_start_[r + 1]; ++e)
-            for (unsigned int d = 0; d < 3; ++d)
-              gradients[9 * local_points_[r] + 3 * c + d] += entries_[e].gradient[d] * u.local_element(entries_[e].index);
-        u.zero_out_ghost_values();
-      }
-    dealii::Utilities::MPI::sum(gradients, space_.mesh.communicator(), gradients);
+    values.resize(3 * local_points_.size());
+    gradients.resize(9 * local_points_.size());
+    for_groups(velocity,
+               [&](const unsigned int r, const CellValues &u, const Shapes &shapes) { evaluate_gradient(u, shapes, &values[3 * r], &gradients[9 * r]); });
   }
 
 
   void
   PointInterpolation::add_load(const std::vector<double> &forces, const std::vector<double> &moments, FluidBlockVector &load) const
   {
-    for (unsigned int c = 0; c < 3; ++c)
+    const NodeSpace &nodes = *space_.velocity;
+    FluidVector     &f     = load.block(velocity_block);
+    CellValues       local;
+    for (const Group &group : groups_)
       {
-        FluidVector &f = load.block(c);
-        for (std::size_t r = 0; r < local_points_.size(); ++r)
+        for (auto &line : local)
+          for (Vector4 &node : line)
+            node = Vector4();
+        const double inverse_size = 1. / nodes.cell_sizes()[group.cell];
+        for (unsigned int i = group.begin; i < group.end; ++i)
           {
-            const unsigned int q = local_points_[r];
-            for (std::size_t e = row_start_[r]; e < row_start_[r + 1]; ++e)
-              {
-                const Entry &entry = entries_[e];
-                double       sum   = entry.value * forces[3 * q + c];
-                if (!moments.empty())
-                  for (unsigned int d = 0; d < 3; ++d)
-                    sum += entry.gradient[d] * moments[9 * q + 3 * c + d];
-                f.local_element(entry.index) += sum;
-              }
+            const unsigned int r = order_[i];
+            const Shapes       shapes(unit_[r], inverse_size);
+            if (moments.empty())
+              integrate(shapes, &forces[3 * r], local);
+            else
+              integrate(shapes, &forces[3 * r], &moments[9 * r], local);
           }
-        f.compress(dealii::VectorOperation::add);
+        scatter(nodes, group.cell, local, f.begin());
       }
+    f.compress(dealii::VectorOperation::add);
   }
 } // namespace tanktread

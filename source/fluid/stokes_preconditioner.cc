@@ -3,60 +3,92 @@
 
 #include <tanktread/fluid/stokes_preconditioner.h>
 
+#include <algorithm>
+
 namespace tanktread
 {
-  StokesPreconditioner::StokesPreconditioner(const StokesOperator &stokes)
-    : stokes_(stokes)
-    , velocity_scratch_(stokes.space().velocity.partitioner())
+  namespace
   {
-    dealii::TrilinosWrappers::PreconditionAMG::AdditionalData amg;
-    amg.elliptic              = true;
-    amg.higher_order_elements = true;
-    amg.n_cycles              = 1;
-    amg.smoother_sweeps       = 1;
-    amg.aggregation_threshold = 0.02;
-    multigrid_.initialize(stokes.laplace(), amg);
+    /** Of the trilinear functions on the unit cube. */
+    std::vector<double>
+    pressure_mass_matrix()
+    {
+      std::vector<double> result(64, 1. / 216.);
+      for (unsigned int i = 0; i < 8; ++i)
+        for (unsigned int j = 0; j < 8; ++j)
+          for (unsigned int bit = 1; bit < 8; bit *= 2)
+            result[8 * i + j] *= (i & bit) == (j & bit) ? 2. : 1.;
+      return result;
+    }
+  } // namespace
 
+
+  StokesPreconditioner::StokesPreconditioner(const TaylorHoodSpace &space, Multigrid<float> &multigrid)
+    : space_(space)
+    , multigrid_(multigrid)
+    , instructions_(best_instruction_set())
+    , load_(space.velocity->full_size())
+  {
+    const NodeSpace &p = *space.pressure;
+    for (auto *array : {&p_, &r_p_, &residual_, &direction_})
+      array->resize(p.full_size());
+    for (const double d : p.diagonal(pressure_mass_matrix(), 3))
+      inverse_diagonal_.push_back(1. / d);
     // On cubes the diagonally scaled trilinear mass matrix has its eigenvalues in [1/8, 27/8]; hanging nodes change little.
-    Chebyshev::AdditionalData data;
-    data.preconditioner = std::make_shared<Diagonal>();
-    auto &inverse       = data.preconditioner->get_vector();
-    inverse.reinit(stokes.space().pressure.partitioner());
-    for (const auto i : inverse.locally_owned_elements())
-      inverse(i) = 1. / stokes.pressure_mass().diag_element(i);
-    data.degree              = 5;
-    data.smoothing_range     = 20.;
-    data.eig_cg_n_iterations = 10;
-    pressure_mass_inverse_.initialize(stokes.pressure_mass(), data);
+    const auto   apply   = [&](float *x, float *y) { apply_pressure_mass(x, y); };
+    const double largest = largest_eigenvalue<1>(apply, p, arrays());
+    range_               = {5, largest / 20., 1.05 * largest};
+  }
+
+
+  ChebyshevArrays<float>
+  StokesPreconditioner::arrays() const
+  {
+    return {inverse_diagonal_, p_, r_p_, residual_, direction_};
   }
 
 
   void
-  StokesPreconditioner::apply_inverse_pressure_mass(FluidVector &dst, const FluidVector &src) const
+  StokesPreconditioner::apply_pressure_mass(float *const p, float *const y) const
   {
-    pressure_mass_inverse_.vmult(dst, src);
+    space_.pressure->update(p);
+    std::fill(y, y + space_.pressure->full_size(), 0.f);
+    add_pressure_mass(cubes(space_), p, y);
+    space_.pressure->collect(y);
   }
 
 
   void
-  StokesPreconditioner::apply_inverse_laplace(FluidVector &dst, const FluidVector &src) const
+  StokesPreconditioner::solve_pressure(FluidBlockVector &dst, const FluidBlockVector &src) const
   {
-    multigrid_.vmult(dst, src);
+    const NodeSpace &u = *space_.velocity, &p = *space_.pressure;
+    p.load(src.block(pressure_block), r_p_.data());
+    for (float &r : r_p_)
+      r = -r;
+    chebyshev<1>([&](float *x, float *y) { apply_pressure_mass(x, y); }, range_, arrays(), true);
+    p.store(p_.data(), dst.block(pressure_block), false);
+
+    p.update(p_.data());
+    std::fill(load_.begin(), load_.end(), 0.f);
+    add_pressure_gradient(instructions_, cubes(space_), p_.data(), load_.data());
+    u.collect(load_.data());
   }
 
 
   void
-  StokesPreconditioner::vmult(FluidBlockVector &dst, const FluidBlockVector &src) const
+  StokesPreconditioner::vmult(FluidBlockVector &dst, const FluidBlockVector &src, Timings *const timings) const
   {
-    apply_inverse_pressure_mass(dst.block(pressure_block), src.block(pressure_block));
-    dst.block(pressure_block) *= -1.;
-    for (unsigned int c = 0; c < 3; ++c)
-      dst.block(c) = src.block(c);
-    stokes_.add_pressure_gradient(dst, dst.block(pressure_block));
-    for (unsigned int c = 0; c < 3; ++c)
-      {
-        velocity_scratch_ = dst.block(c);
-        apply_inverse_laplace(dst.block(c), velocity_scratch_);
-      }
+    const NodeSpace &u = *space_.velocity;
+    {
+      const Timings::Scope scope(timings, "- pressure mass and gradient");
+      solve_pressure(dst, src);
+    }
+    const Timings::Scope scope(timings, "- V-cycle");
+    float *const         b = multigrid_.right_hand_side();
+    u.load(src.block(velocity_block), b);
+    for (std::size_t i = 0; i < std::size_t(u.stride()) * u.n_owned(); ++i)
+      b[i] += load_[i];
+    multigrid_.v_cycle();
+    u.store(multigrid_.solution(), dst.block(velocity_block), false);
   }
 } // namespace tanktread

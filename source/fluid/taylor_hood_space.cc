@@ -57,12 +57,20 @@ namespace tanktread
   }
 
 
+  TaylorHoodSpace::TaylorHoodSpace(const FluidMesh &mesh, std::shared_ptr<const NodeSpace> velocity_nodes)
+    : mesh(mesh)
+    , velocity(velocity_nodes ? std::move(velocity_nodes) : std::make_shared<const NodeSpace>(ScalarSpace(mesh, 2, true), 3))
+    , pressure(std::make_shared<const NodeSpace>(ScalarSpace(mesh, 1, false), 1))
+  {}
+
+
   void
   TaylorHoodSpace::reinit(FluidBlockVector &vector, const unsigned int n_blocks) const
   {
     vector.reinit(n_blocks);
-    for (unsigned int b = 0; b < std::min(n_blocks, pressure_block + 1); ++b)
-      vector.block(b).reinit(b < pressure_block ? velocity.partitioner() : pressure.partitioner());
+    vector.block(velocity_block).reinit(velocity->partitioner());
+    if (n_blocks > pressure_block)
+      vector.block(pressure_block).reinit(pressure->partitioner());
     vector.collect_sizes();
   }
 } // namespace tanktread

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: energy, nodal forces and tangent of an elastic shell.
 
+#include <Eigen/Eigenvalues>
 #include <tanktread/base/exceptions.h>
 #include <tanktread/shell/face_kernels.h>
 #include <tanktread/shell/helfrich.h>
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 
 namespace tanktread
@@ -94,6 +96,18 @@ namespace tanktread
       hessian.topLeftCorner<6, 6>() += h;
     }
 
+    /** Takes the negative eigenvalues out of the symmetric part of the leading n x n block. */
+    template <int n>
+    void
+    make_positive(SurfaceDerivativesTangent &hessian)
+    {
+      using Block                                          = Eigen::Matrix<double, n, n>;
+      const Block                                block     = hessian.topLeftCorner<n, n>();
+      const Block                                symmetric = 0.5 * (block + block.transpose());
+      const Eigen::SelfAdjointEigenSolver<Block> modes(symmetric);
+      hessian.topLeftCorner<n, n>() -= modes.eigenvectors() * modes.eigenvalues().cwiseMin(0.).asDiagonal() * modes.eigenvectors().transpose();
+    }
+
     void
     scatter_force(const SubdivisionSurface &surface, const unsigned int face, const std::vector<double> &gradient, ControlPoints &f)
     {
@@ -130,11 +144,13 @@ namespace tanktread
     , parameters_(parameters)
     , moduli_(moduli)
     , n_rows_(moduli.bending_modulus > 0. ? 5 : 2)
+    , all_faces_(surface.n_faces())
     , reference_metric_(surface.n_points())
     , reference_weights_(area_weights(surface, reference))
     , reference_curvature_(Eigen::VectorXd::Zero(surface.n_points()))
   {
     parameters.check();
+    std::iota(all_faces_.begin(), all_faces_.end(), 0);
     for (const double modulus : {moduli.surface_young_modulus, moduli.bending_modulus})
       if (!(modulus >= 0.) || !std::isfinite(modulus))
         throw InputError("A modulus of the shell is " + std::to_string(modulus) + "; it must not be negative.");
@@ -210,9 +226,16 @@ namespace tanktread
   Shell::Energy
   Shell::energy(const ControlPoints &x) const
   {
+    return energy(x, all_faces_);
+  }
+
+
+  Shell::Energy
+  Shell::energy(const ControlPoints &x, const std::vector<unsigned int> &faces) const
+  {
     FaceBuffers buffers(surface_, n_rows_, false);
     Energy      energy{0., 0.};
-    for (unsigned int face = 0; face < surface_.n_faces(); ++face)
+    for (const unsigned int face : faces)
       {
         load_face(face, x, buffers);
         for (unsigned int k = 0; k < surface_.n_points_per_face(); ++k)
@@ -230,9 +253,16 @@ namespace tanktread
   ControlPoints
   Shell::force(const ControlPoints &x) const
   {
+    return force(x, all_faces_);
+  }
+
+
+  ControlPoints
+  Shell::force(const ControlPoints &x, const std::vector<unsigned int> &faces) const
+  {
     FaceBuffers   buffers(surface_, n_rows_, false);
     ControlPoints f = ControlPoints::Zero(x.rows(), 3);
-    for (unsigned int face = 0; face < surface_.n_faces(); ++face)
+    for (const unsigned int face : faces)
       {
         load_face(face, x, buffers);
         differentiate_points(face, false, buffers);
@@ -243,7 +273,14 @@ namespace tanktread
 
 
   void
-  Shell::force_and_tangent(const ControlPoints &x, ControlPoints &f, SparseMatrix &K) const
+  Shell::force_and_tangent(const ControlPoints &x, ControlPoints &f, SparseMatrix &K, const Tangent tangent) const
+  {
+    force_and_tangent(x, all_faces_, f, K, tangent);
+  }
+
+
+  void
+  Shell::force_and_tangent(const ControlPoints &x, const std::vector<unsigned int> &faces, ControlPoints &f, SparseMatrix &K, const Tangent tangent) const
   {
     if (K.rows() != 3 * x.rows() || !K.isCompressed() || K.nonZeros() != surface_.pattern().n_block_entries())
       K = surface_.pattern().block_matrix();
@@ -253,10 +290,13 @@ namespace tanktread
     FaceBuffers buffers(surface_, n_rows_, true);
     const bool  symmetric = n_rows_ == 2 || parameters_.form == BendingForm::variational;
     f.setZero(x.rows(), 3);
-    for (unsigned int face = 0; face < surface_.n_faces(); ++face)
+    for (const unsigned int face : faces)
       {
         load_face(face, x, buffers);
         differentiate_points(face, true, buffers);
+        if (tangent == Tangent::positive)
+          for (SurfaceDerivativesTangent &hessian : buffers.hessians)
+            n_rows_ == 5 ? make_positive<15>(hessian) : make_positive<6>(hessian);
         scatter_force(surface_, face, buffers.f, f);
         stencil_congruence(buffers.stencils, buffers.hessians.front().data(), symmetric, buffers.scratch.data(), buffers.block.data());
         scatter_tangent(surface_, face, buffers.block, K.valuePtr());

@@ -58,12 +58,7 @@ namespace tanktread
     result.energy        = shell.shell.energy(state.x);
     result.pressure_jump = state.pressure_jump;
     result.n_cells       = fluid.mesh().triangulation().n_global_active_cells();
-    FluidVector product(state.fluid.block(0));
-    for (unsigned int c = 0; c < 3; ++c)
-      {
-        fluid.stokes().laplace().vmult(product, state.fluid.block(c));
-        result.dissipation += product * state.fluid.block(c);
-      }
+    result.dissipation   = fluid.stokes().dissipation(state.fluid);
     return result;
   }
 

@@ -62,6 +62,7 @@ namespace tanktread
     , shape_(make_capsule(parameters.capsule, parameters.shell_mesh.level))
     , surface_(shape_.topology, triangle_quadrature(parameters.shell_mesh.quadrature), derivatives_needed(parameters))
     , shell_(surface_, parameters.shell, {parameters.scene.surface_young_modulus(), parameters.scene.bending_modulus()}, shape_.control_points)
+    , distributed_shell_(shell_, shape_.topology, communicator)
     , fluid_(communicator, parameters.scene.box_side, parameters.fluid_mesh)
     , coupling_surface_(
         shape_.topology,
@@ -70,7 +71,7 @@ namespace tanktread
     , coupling_(coupling_surface_, area_weights(coupling_surface_, shape_.control_points))
     , view_{shape_.topology, surface_, shell_, enclosed_volume(surface_, shape_.control_points)}
     , flow_{parameters.scene.flow == Flow::shear ? 1. : 0.}
-    , solver_(parameters.solver, shell_, surface_, coupling_, view_.initial_volume, flow_, timings_)
+    , solver_(parameters.solver, distributed_shell_, surface_, coupling_, view_.initial_volume, flow_, timings_)
     , stepper_(parameters.time, parameters.solver.coupling, parameters.scene.end_time, solver_, log_)
     , next_fields_(parameters.output.field_interval)
   {
@@ -125,9 +126,9 @@ namespace tanktread
 
     std::ostringstream text;
     text << "Shell: " << surface_.n_control_points() << " control points, " << surface_.n_points() << " quadrature points, " << coupling_surface_.n_points()
-         << " coupling points. Fluid: cells from " << fluid_.mesh().cell_size(0) << " a to " << fluid_.mesh().cell_size(fluid_.mesh().finest_level()) << " a, "
-         << fluid_.mesh().triangulation().n_global_active_cells() << " now, with " << 3 * fluid_.space().velocity.dofs().n_dofs() << " velocity and "
-         << fluid_.space().pressure.dofs().n_dofs() << " pressure unknowns.";
+         << " coupling points. Fluid: cells from " << fluid_.mesh().cell_size(fluid_.mesh().coarsest_level()) << " a to " << fluid_.mesh().cell_size(fluid_.mesh().finest_level()) << " a, "
+         << fluid_.mesh().triangulation().n_global_active_cells() << " now, with " << fluid_.space().velocity->partitioner()->size() << " velocity and "
+         << fluid_.space().pressure->partitioner()->size() << " pressure unknowns.";
     log_.line(text.str());
     record(first, false);
   }

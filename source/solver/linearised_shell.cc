@@ -3,83 +3,60 @@
 
 #include <deal.II/base/numbers.h>
 
-#include <tanktread/base/exceptions.h>
 #include <tanktread/solver/linearised_shell.h>
 #include <tanktread/surface/surface_geometry.h>
 #include <tanktread/surface/surface_operators.h>
 
-#include <string>
-
 namespace tanktread
 {
-  SparseMatrix
-  for_three_components(const SparseMatrix &matrix)
-  {
-    std::vector<Eigen::Triplet<double>> entries;
-    entries.reserve(3 * matrix.nonZeros());
-    for (int i = 0; i < matrix.outerSize(); ++i)
-      for (SparseMatrix::InnerIterator entry(matrix, i); entry; ++entry)
-        for (int c = 0; c < 3; ++c)
-          entries.emplace_back(3 * i + c, 3 * entry.col() + c, entry.value());
-    SparseMatrix result(3 * matrix.rows(), 3 * matrix.cols());
-    result.setFromTriplets(entries.begin(), entries.end());
-    return result;
-  }
-
-
   namespace
   {
-    /** Z = c0 M_s + c1 L_s of LinearisedShell. */
+    /** Z = c0 M_s + c1 L_s of LinearisedShell, for one component. */
     SparseMatrix
     inverse_mobility(const SubdivisionSurface &surface, const ControlPoints &x, const double h)
     {
       const double k1 = 2., k2 = dealii::numbers::PI / h;
       const double c0 = 4. * k1 * k2 / (k1 + k2), c1 = 4. / (k1 + k2);
-      return for_three_components(c0 * mass_matrix(surface, area_weights(surface, x)) + c1 * laplace_beltrami(surface, x));
-    }
-
-
-    void
-    factorise(Factorisation &factorisation, const SparseMatrix &matrix, const std::string &what)
-    {
-      factorisation.compute(matrix);
-      if (factorisation.info() != Eigen::Success)
-        throw NumericalError(what + " is singular.");
+      SparseMatrix Z = mass_matrix(surface, c0 * area_weights(surface, x));
+      Z.coeffs() += c1 * laplace_beltrami(surface, x).coeffs();
+      return Z;
     }
   } // namespace
 
 
-  LinearisedShell::LinearisedShell(const Shell              &shell,
+  LinearisedShell::LinearisedShell(const DistributedShell   &shell,
                                    const SubdivisionSurface &surface,
                                    const Coupling           &coupling,
                                    const State              &state,
                                    const ControlPoints      &velocity,
                                    const VelocityGradients  &velocity_gradient,
-                                   const PointDerivatives    derivatives,
-                                   const double              tau,
-                                   const double              h)
+                                   const Linearisation      &choice,
+                                   ImplicitShell            &implicit_shell)
     : coupling_(coupling)
-    , tau_(tau)
+    , implicit_shell_(implicit_shell)
+    , tau_(choice.tau)
+    , pressure_jump_(state.pressure_jump)
     , volume_gradient_(tanktread::volume_gradient(surface, state.x))
-    , density_(coupling.density((derivatives == PointDerivatives::complete ? 1. : 0.) * (state.force + state.pressure_jump * volume_gradient_)))
+    , density_(coupling.density((choice.derivatives == PointDerivatives::complete ? 1. : 0.) * (state.force + state.pressure_jump * volume_gradient_)))
     , normal_field_(coupling.density(volume_gradient_))
   {
-    if (tau == 0.)
+    if (tau_ == 0.)
       return;
-    const SparseMatrix volume_hessian = tanktread::volume_hessian(surface, state.x);
-    const SparseMatrix gamma          = coupling.gradient_matrix(velocity_gradient);
-    flux_gradient_                    = nodal(gamma.transpose() * flat(normal_field_) + volume_hessian * flat(velocity));
+    volume_hessian_ = tanktread::volume_hessian(surface, state.x);
+    SparseMatrix gamma;
+    coupling.gradient_matrix(velocity_gradient, gamma);
+    flux_gradient_ = nodal(gamma.transpose() * flat(normal_field_) + volume_hessian_ * flat(velocity));
 
     ControlPoints force;
-    shell.force_and_tangent(state.x, force, stiffness_);
-    pressure_stiffness_ = state.pressure_jump * volume_hessian;
-    stiffness_ -= pressure_stiffness_;
-    Z_ = inverse_mobility(surface, state.x, h);
-    factorise(implicit_shell_, Z_ + tau * stiffness_, "The shell's implicit operator, for this time step,");
+    shell.force_and_tangent(state.x, force, stiffness_, choice.tangent);
+    if (choice.tangent == Tangent::exact)
+      stiffness_.coeffs() -= state.pressure_jump * volume_hessian_.coeffs();
+    if (!implicit_shell.serves(tau_))
+      implicit_shell.renew(inverse_mobility(surface, state.x, choice.h), stiffness_, tau_);
 
-    motion_ = for_three_components(coupling.mass()) - tau * gamma - state.volume_shift * volume_hessian;
-    factorise(motion_factors_, motion_, "The motion of the shell in the velocity gradient, for this time step,");
-    volume_response_ = nodal(motion_factors_.solve(flat(volume_gradient_)));
+    gamma.coeffs() = tau_ * gamma.coeffs() + state.volume_shift * volume_hessian_.coeffs();
+    motion_.emplace(coupling, std::move(gamma), choice.accuracy);
+    volume_response_ = motion_->solve(volume_gradient_);
   }
 
 
@@ -96,7 +73,7 @@ namespace tanktread
   {
     if (tau_ == 0.)
       return ControlPoints::Zero(velocity_moments.rows(), 3);
-    ControlPoints dx = nodal(motion_factors_.solve(tau_ * flat(velocity_moments)));
+    ControlPoints dx = motion_->solve(tau_ * velocity_moments);
     correct_volume(dx, 0.);
     return dx;
   }
@@ -107,8 +84,7 @@ namespace tanktread
   {
     if (tau_ == 0.)
       return ControlPoints::Zero(r_x.rows(), 3);
-    const ControlPoints moments = -(coupling_.mass() * r_x);
-    ControlPoints       dx      = nodal(motion_factors_.solve(flat(moments)));
+    ControlPoints dx = motion_->solve(-(coupling_.mass() * r_x));
     correct_volume(dx, r_V);
     return dx;
   }
@@ -129,7 +105,7 @@ namespace tanktread
   {
     if (tau_ == 0.)
       return 0.;
-    const ControlPoints row = nodal(motion_ * flat(dx)) - tau_ * velocity_moments + coupling_.mass() * r_x;
+    const ControlPoints row = motion_->times(dx) - tau_ * velocity_moments + coupling_.mass() * r_x;
     return normal_field_.cwiseProduct(row).sum() / normal_field_.cwiseProduct(volume_gradient_).sum();
   }
 
@@ -148,16 +124,7 @@ namespace tanktread
   {
     if (tau_ == 0.)
       return force;
-    return nodal(Z_ * implicit_shell_.solve(flat(force)));
-  }
-
-
-  ControlPoints
-  LinearisedShell::displacement_of_force(const ControlPoints &force) const
-  {
-    if (tau_ == 0.)
-      return ControlPoints::Zero(force.rows(), 3);
-    return nodal(tau_ * implicit_shell_.solve(flat(force)));
+    return implicit_shell_.damped(force);
   }
 
 
@@ -166,6 +133,6 @@ namespace tanktread
   {
     if (tau_ == 0.)
       return dG;
-    return dG - nodal(pressure_stiffness_ * flat(dx));
+    return dG - pressure_jump_ * nodal(volume_hessian_ * flat(dx));
   }
 } // namespace tanktread

@@ -51,33 +51,53 @@ namespace tanktread
     const auto         &coupling     = shell_.coupling();
     const MPI_Comm      communicator = stokes_.space().mesh.communicator();
     const ShellUnknowns unknowns     = shell_unknowns(src, communicator);
-    const ControlPoints moments      = coupling.velocity_moments(src);
-    const ControlPoints dx           = shell_.displacement(moments);
-
-    stokes_.vmult(dst, src);
-    coupling.spread_with_motion(-unknowns.force - unknowns.pressure_jump * shell_.volume_gradient(), dx, -shell_.density(), dst);
+    ControlPoints       moments, dx;
+    {
+      const Timings::Scope scope(timings_, "- coupling");
+      moments = coupling.velocity_moments(src);
+    }
+    {
+      const Timings::Scope scope(timings_, "- shell");
+      dx = shell_.displacement(moments);
+    }
+    {
+      const Timings::Scope scope(timings_, "- Stokes operator");
+      stokes_.vmult(dst, src);
+    }
+    {
+      const Timings::Scope scope(timings_, "- coupling");
+      coupling.spread_with_motion(-unknowns.force - unknowns.pressure_jump * shell_.volume_gradient(), dx, -shell_.density(), dst);
+    }
+    const Timings::Scope scope(timings_, "- shell");
     set_shell_unknowns(dst, {-shell_.flux(moments, dx), shell_.damped(unknowns.force + shell_.stiffness_times(dx))});
   }
 
 
-  MonolithicPreconditioner::MonolithicPreconditioner(const StokesPreconditioner &stokes, const LinearisedShell &shell, const double volume)
+  MonolithicPreconditioner::MonolithicPreconditioner(const StokesPreconditioner &stokes,
+                                                     const LinearisedShell      &shell,
+                                                     const double                volume,
+                                                     Timings *const              timings)
     : stokes_(stokes)
     , shell_(shell)
     , volume_(volume)
+    , timings_(timings)
   {
-    stokes.stokes().space().reinit(loads_);
+    stokes.space().reinit(loads_);
   }
 
 
   void
   MonolithicPreconditioner::vmult(FluidBlockVector &dst, const FluidBlockVector &src) const
   {
-    const ShellUnknowns r = shell_unknowns(src, stokes_.stokes().space().mesh.communicator());
+    const ShellUnknowns r = shell_unknowns(src, stokes_.space().mesh.communicator());
     const ShellUnknowns z{-r.pressure_jump / volume_, r.force};
     for (unsigned int b = 0; b <= pressure_block; ++b)
       loads_.block(b) = src.block(b);
-    shell_.coupling().spread(z.force + z.pressure_jump * shell_.volume_gradient(), loads_);
-    stokes_.vmult(dst, loads_);
+    {
+      const Timings::Scope scope(timings_, "- coupling");
+      shell_.coupling().spread(z.force + z.pressure_jump * shell_.volume_gradient(), loads_);
+    }
+    stokes_.vmult(dst, loads_, timings_);
     set_shell_unknowns(dst, z);
   }
 } // namespace tanktread

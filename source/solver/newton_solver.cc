@@ -31,7 +31,7 @@ namespace tanktread
 
 
   NewtonSolver::NewtonSolver(const SolverParameters   &parameters,
-                             const Shell              &shell,
+                             const DistributedShell   &shell,
                              const SubdivisionSurface &surface,
                              Coupling                 &coupling,
                              const double              volume,
@@ -44,6 +44,7 @@ namespace tanktread
     , volume_(volume)
     , flow_(flow)
     , timings_(timings)
+    , implicit_shell_(shell.communicator())
   {}
 
 
@@ -91,10 +92,10 @@ namespace tanktread
 
 
   double
-  NewtonSolver::norm(const Residual &r, const LinearisedShell &shell) const
+  NewtonSolver::norm(const Residual &r, const double tau) const
   {
-    const double from_forces = std::sqrt(shell.displacement_of_force(r.force).squaredNorm() / r.x.rows()) / shell.tau();
-    return dealii::Utilities::MPI::broadcast(fluid_->mesh().communicator(), std::hypot(speed(r, shell.tau()), from_forces), 0);
+    const double from_forces = std::sqrt(implicit_shell_.velocity(r.force).squaredNorm() / r.x.rows());
+    return dealii::Utilities::MPI::broadcast(fluid_->mesh().communicator(), std::hypot(speed(r, tau), from_forces), 0);
   }
 
 
@@ -124,14 +125,14 @@ namespace tanktread
 
 
   LinearisedShell
-  NewtonSolver::linearised(const State &state, const PointDerivatives derivatives, const double tau)
+  NewtonSolver::linearised(const State &state, const Linearisation &choice)
   {
     const Timings::Scope scope(timings_, "Shell tangent and factorisation");
-    VelocityGradients    gradients = VelocityGradients::Zero(coupling_.surface().n_points(), 9);
-    if (derivatives == PointDerivatives::complete)
+    VelocityGradients    gradients = VelocityGradients::Zero(coupling_.n_local_points(), 9);
+    if (choice.derivatives == PointDerivatives::complete)
       gradients = coupling_.velocity_gradients(state.fluid);
     gradients.col(2).array() += flow_.shear_rate; // du_x/dz
-    return {shell_, surface_, coupling_, state, shell_velocity(state), gradients, derivatives, tau, finest_cell()};
+    return {shell_, surface_, coupling_, state, shell_velocity(state), gradients, choice, implicit_shell_};
   }
 
 
@@ -143,13 +144,21 @@ namespace tanktread
   }
 
 
+  double
+  NewtonSolver::motion_accuracy(const double norm) const
+  {
+    // What is left of the residual after an iteration is to be small against its square, and against the tolerance.
+    return std::min(0.01, 0.01 * std::max(norm, parameters_.newton_tolerance));
+  }
+
+
   LinearReport
   NewtonSolver::linear_solve(const Residual &r, const LinearisedShell &shell, const double tolerance, State &increment)
   {
     const Timings::Scope           scope(timings_, "Linear solver");
     const unsigned int             n_points = r.x.rows();
-    const MonolithicOperator       matrix(fluid_->stokes(), shell);
-    const MonolithicPreconditioner preconditioner(fluid_->preconditioner(), shell, volume_);
+    const MonolithicOperator       matrix(fluid_->stokes(), shell, &timings_);
+    const MonolithicPreconditioner preconditioner(fluid_->preconditioner(), shell, volume_, &timings_);
 
     const ControlPoints dx0 = shell.displacement_of_residual(r.x, r.volume);
     FluidBlockVector    rhs = monolithic_vector(fluid_->space(), n_points), solution(rhs);
@@ -158,7 +167,10 @@ namespace tanktread
     coupling_.spread_with_motion(ControlPoints::Zero(n_points, 3), dx0, shell.density(), rhs);
     set_shell_unknowns(rhs, {r.flux + shell.flux(ControlPoints::Zero(n_points, 3), dx0), shell.damped(-r.force - shell.stiffness_times(dx0))});
 
-    const LinearReport report = solve_fgmres(matrix, preconditioner, solution, rhs, tolerance, parameters_.max_linear_iterations);
+    // With an exact tangent that is indefinite the solver gets nowhere; a definite one needs a few dozen iterations.
+    const unsigned int max_iterations =
+      tangent_ == Tangent::exact && shell.tau() > 0. ? std::min(100u, parameters_.max_linear_iterations) : parameters_.max_linear_iterations;
+    const LinearReport report = solve_fgmres(matrix, preconditioner, solution, rhs, tolerance, max_iterations, krylov_basis_);
 
     fluid_->space().reinit(increment.fluid);
     for (unsigned int b = 0; b <= pressure_block; ++b)
@@ -179,15 +191,15 @@ namespace tanktread
 
 
   double
-  NewtonSolver::line_search(State &state, Residual &r, const LinearisedShell &shell, const State &increment, const ControlPoints &xhat)
+  NewtonSolver::line_search(State &state, Residual &r, const State &increment, const ControlPoints &xhat, const double tau)
   {
-    const double before = norm(r, shell);
+    const double before = norm(r, tau);
     for (double length = 1.; length > 0.05; length *= 0.5)
       try
         {
           State        trial   = moved(state, increment, length);
-          Residual     r_trial = residual(trial, xhat, shell.tau());
-          const double after   = norm(r_trial, shell);
+          Residual     r_trial = residual(trial, xhat, tau);
+          const double after   = norm(r_trial, tau);
           if (after <= (1. - 1e-4 * length) * before || is_solved(r_trial, after))
             {
               state = std::move(trial);
@@ -203,34 +215,66 @@ namespace tanktread
   }
 
 
+  std::string
+  NewtonSolver::iterate(State &state, Residual &r, const LinearisedShell &shell, const ControlPoints &xhat, NewtonReport &report)
+  {
+    State              increment;
+    const LinearReport linear = linear_solve(r, shell, forcing_term(report.residuals.back()), increment);
+    implicit_shell_.watch(linear);
+    ++report.newton_iterations;
+    report.linear_iterations += linear.iterations;
+    if (!linear.converged)
+      return "the linear solver did not converge in " + std::to_string(linear.iterations) + " iterations";
+    report.step_lengths.push_back(line_search(state, r, increment, xhat, shell.tau()));
+    report.residuals.push_back(norm(r, shell.tau()));
+    return report.step_lengths.back() == 0. ? "Newton's direction does not reduce the residual" : "";
+  }
+
+
+  void
+  NewtonSolver::use(const Tangent tangent)
+  {
+    tangent_ = tangent;
+    implicit_shell_.discard();
+  }
+
+
   NewtonReport
   NewtonSolver::solve(State &state, const ControlPoints &xhat, const double tau)
   {
     NewtonReport report;
-    State        trial = state, increment;
+    State        trial = state;
     try
       {
-        Residual r      = residual(trial, xhat, tau);
-        double   length = dealii::Utilities::MPI::broadcast(fluid_->mesh().communicator(), tau * speed(r, tau), 0); // about that of the next displacement
+        Residual r        = residual(trial, xhat, tau);
+        double   length   = dealii::Utilities::MPI::broadcast(fluid_->mesh().communicator(), tau * speed(r, tau), 0); // about that of the next displacement
+        bool     cautious = false;
         for (bool solved = false; !solved;)
           {
             if (report.newton_iterations == parameters_.max_newton_iterations)
               throw NumericalError("no convergence in " + std::to_string(report.newton_iterations) + " Newton iterations");
             if (!report.step_lengths.empty() && report.step_lengths.back() < 1.)
               coupling_.move(trial.x); // where a rejected trial has left it
-            const bool            near  = length < 0.25 * finest_cell();
-            const LinearisedShell shell = linearised(trial, near ? PointDerivatives::complete : PointDerivatives::frozen, tau);
+            const bool near = length < 0.25 * finest_cell();
+            if (near && !cautious && tangent_ == Tangent::positive)
+              use(Tangent::exact);
+            const unsigned int    renewals = implicit_shell_.n_renewals();
+            const LinearisedShell shell    = linearised(
+              trial,
+              {tau, finest_cell(), motion_accuracy(length / tau), near && !cautious ? PointDerivatives::complete : PointDerivatives::frozen, tangent_});
             if (report.residuals.empty())
-              report.residuals.push_back(norm(r, shell));
-            const LinearReport linear = linear_solve(r, shell, forcing_term(report.residuals.back()), increment);
-            ++report.newton_iterations;
-            report.linear_iterations += linear.iterations;
-            if (!linear.converged)
-              throw NumericalError("the linear solver did not converge in " + std::to_string(linear.iterations) + " iterations");
-            report.step_lengths.push_back(line_search(trial, r, shell, increment, xhat));
-            report.residuals.push_back(norm(r, shell));
-            if (report.step_lengths.back() == 0.)
-              throw NumericalError("Newton's direction does not reduce the residual");
+              report.residuals.push_back(norm(r, tau));
+            const std::string failure = iterate(trial, r, shell, xhat, report);
+            if (!failure.empty())
+              {
+                if (implicit_shell_.n_renewals() == renewals)
+                  implicit_shell_.discard(); // perhaps it was too old: the same iteration again, with a new one
+                else if (tangent_ == Tangent::exact)
+                  use(Tangent::positive);
+                else
+                  throw NumericalError(failure);
+                cautious = tangent_ == Tangent::positive;
+              }
             solved = is_solved(r, report.residuals.back());
             length = tau * report.residuals.back();
           }
@@ -259,7 +303,7 @@ namespace tanktread
     const double wanted = std::max(1e-10, 1e-2 * parameters_.newton_tolerance) * load.l2_norm(), given = std::hypot(r.fluid.l2_norm(), r.flux);
     if (given <= wanted)
       return 0;
-    const LinearReport report = linear_solve(r, linearised(state, PointDerivatives::frozen, 0.), wanted / given, increment);
+    const LinearReport report = linear_solve(r, linearised(state, {0., finest_cell(), 0., PointDerivatives::frozen}), wanted / given, increment);
     if (!report.converged)
       {
         std::ostringstream message;

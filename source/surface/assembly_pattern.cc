@@ -4,6 +4,7 @@
 #include <tanktread/surface/assembly_pattern.h>
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace tanktread
 {
@@ -63,5 +64,21 @@ namespace tanktread
     starts[3 * n] = 9 * row_starts_[n];
     matrix.coeffs().setZero();
     return matrix;
+  }
+
+
+  void
+  add_for_three_components(const SparseMatrix &matrix, SparseMatrix &blocks)
+  {
+    if (blocks.rows() != 3 * matrix.rows() || blocks.nonZeros() != 9 * matrix.nonZeros())
+      throw std::logic_error("add_for_three_components() got matrices of different patterns.");
+    const int *starts = matrix.outerIndexPtr();
+    for (int row = 0; row < matrix.rows(); ++row)
+      for (int c = 0; c < 3; ++c)
+        {
+          double *values = blocks.valuePtr() + blocks.outerIndexPtr()[3 * row + c] + c;
+          for (int k = starts[row]; k < starts[row + 1]; ++k, values += 3)
+            *values += matrix.valuePtr()[k];
+        }
   }
 } // namespace tanktread

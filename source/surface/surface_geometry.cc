@@ -106,9 +106,20 @@ namespace tanktread
     SparseMatrix           hessian = pattern.block_matrix();
     double                *values  = hessian.valuePtr();
     const unsigned int     n = surface.support_size(), n_points = surface.n_points_per_face();
+    const auto             add = [&](const unsigned int f, const unsigned int i, const unsigned int j, const Vector &v) {
+      const int row    = surface.support(f)[i];
+      const int length = 3 * pattern.row_length(row);
+      double   *entry  = values + 9 * pattern.row_start(row) + 3 * pattern.places(f)[i * n + j];
+      entry[1] += v[2];
+      entry[2] -= v[1];
+      entry[length] -= v[2];
+      entry[length + 2] += v[0];
+      entry[2 * length] += v[1];
+      entry[2 * length + 1] -= v[0];
+    };
     for (unsigned int f = 0; f < surface.n_faces(); ++f)
       for (unsigned int i = 0; i < n; ++i)
-        for (unsigned int j = 0; j < n; ++j)
+        for (unsigned int j = 0; j < i; ++j)
           {
             Vector v = Vector::Zero();
             for (unsigned int q = f * n_points; q < (f + 1) * n_points; ++q)
@@ -118,15 +129,8 @@ namespace tanktread
                   ((S[i] * S_1[j] - S_1[i] * S[j]) * a_2.row(q) + (S_1[i] * S_2[j] - S_2[i] * S_1[j]) * X.row(q) +
                    (S_2[i] * S[j] - S[i] * S_2[j]) * a_1.row(q));
               }
-            const int row    = surface.support(f)[i];
-            const int length = 3 * pattern.row_length(row);
-            double   *entry  = values + 9 * pattern.row_start(row) + 3 * pattern.places(f)[i * n + j];
-            entry[1] += v[2];
-            entry[2] -= v[1];
-            entry[length] -= v[2];
-            entry[length + 2] += v[0];
-            entry[2 * length] += v[1];
-            entry[2 * length + 1] -= v[0];
+            add(f, i, j, v);
+            add(f, j, i, -v);
           }
     return hessian;
   }

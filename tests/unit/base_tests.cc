@@ -502,6 +502,35 @@ TEST(Timings, AddUpTimeAndCalls)
   EXPECT_EQ(count(timings.table(), "\n"), 4u);
 }
 
+TEST(Timings, PiecesAndWhatTheyLeaveOfTheirPart)
+{
+  Timings timings;
+  {
+    const Timings::Scope before(timings, "before");
+    const Timings::Scope outer(timings, "outer");
+    for (const char *name : {"- one", "- two"})
+      {
+        const Timings::Scope piece(&timings, name);
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      }
+    const Timings::Scope nothing(nullptr, "- one");
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  {
+    const Timings::Scope after(timings, "after");
+  }
+  ASSERT_EQ(timings.parts().size(), 5u);
+  EXPECT_EQ(timings.parts()[2].calls, 1u);
+  EXPECT_DOUBLE_EQ(timings.rest("outer"), timings.seconds("outer") - timings.seconds("- one") - timings.seconds("- two"));
+  EXPECT_GE(timings.rest("outer"), 0.005);
+  EXPECT_DOUBLE_EQ(timings.rest("before"), timings.seconds("before"));
+  EXPECT_EQ(timings.seconds("unknown"), 0.);
+  const std::string table = timings.table();
+  EXPECT_LT(table.find("  - two"), table.find("  - rest"));
+  EXPECT_LT(table.find("  - rest"), table.find("after"));
+  EXPECT_EQ(count(table, "- rest"), 1u);
+}
+
 TEST(CsvWriter, RowsAreOnDiskAtOnceWithTenDigits)
 {
   const TemporaryFolder temporary;

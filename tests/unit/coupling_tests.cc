@@ -10,14 +10,16 @@
 
 #include <random>
 
+#include "nodal_velocity.h"
+
 using namespace tanktread;
 
 namespace
 {
   struct Scene
   {
-    Scene()
-      : mesh(MPI_COMM_WORLD, 4., parameters())
+    explicit Scene(const MPI_Comm communicator = MPI_COMM_WORLD)
+      : mesh(communicator, 4., parameters())
       , shape(make_capsule({}, 2))
       , surface(shape.topology, triangle_quadrature(3), Derivatives::first)
       , coupling(surface, area_weights(surface, shape.control_points))
@@ -34,10 +36,8 @@ namespace
       space->reinit(u);
       std::mt19937                     random(7 + dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD));
       std::normal_distribution<double> normal;
-      for (unsigned int c = 0; c < 3; ++c)
-        for (const auto i : u.block(c).locally_owned_elements())
-          if (!space->velocity.constraints().is_constrained(i))
-            u.block(c)(i) = normal(random);
+      for (double &number : u.block(velocity_block))
+        number = normal(random);
       std::mt19937 same_everywhere(3);
       f.resizeLike(x);
       for (Eigen::Index i = 0; i < f.size(); ++i)
@@ -84,8 +84,14 @@ TEST(Coupling, SpreadingConservesTotalForce)
   FluidBlockVector load;
   s.space->reinit(load);
   s.coupling.spread(s.f, load);
+  const FluidVector &forces = load.block(velocity_block);
   for (unsigned int c = 0; c < 3; ++c)
-    EXPECT_NEAR(load.block(c).mean_value() * load.block(c).size(), s.f.col(c).sum(), 1e-11 * s.f.norm());
+    {
+      double total = 0.;
+      for (unsigned int node = 0; node < s.space->velocity->n_owned(); ++node)
+        total += forces.local_element(3 * node + c);
+      EXPECT_NEAR(dealii::Utilities::MPI::sum(total, MPI_COMM_WORLD), s.f.col(c).sum(), 1e-11 * s.f.norm());
+    }
 }
 
 
@@ -109,7 +115,9 @@ TEST(Coupling, MotionOfPointsIsTheDerivative)
   const double scale = std::abs(expected) + 1.;
   EXPECT_NEAR(load * s.u, expected, 1e-5 * scale);
 
-  const SparseMatrix    gamma    = s.coupling.gradient_matrix(s.coupling.velocity_gradients(s.u));
+  SparseMatrix gamma;
+  for (unsigned int call = 0; call < 2; ++call) // the second into the same matrix
+    s.coupling.gradient_matrix(s.coupling.velocity_gradients(s.u), gamma);
   const ControlPoints   g        = s.coupling.density(s.f);
   const Eigen::VectorXd gamma_dx = gamma * Eigen::Map<const Eigen::VectorXd>(dx.data(), dx.size());
   EXPECT_NEAR(Eigen::Map<const Eigen::VectorXd>(g.data(), g.size()).dot(gamma_dx), expected, 1e-5 * scale);
@@ -119,21 +127,59 @@ TEST(Coupling, MotionOfPointsIsTheDerivative)
 TEST(Coupling, InterpolatesLinearVelocitiesExactly)
 {
   // u = (z, 0, 0) at the nodes off the walls: in every cell that the shell cuts it is the linear field, which the surface reproduces, so J u is u at the control points.
-  Scene       s;
-  const auto &dofs = s.space->velocity.dofs();
-  s.u              = 0.;
-  std::vector<dealii::types::global_dof_index> indices(27);
-  for (const auto &cell : dofs.active_cell_iterators())
-    if (cell->is_locally_owned())
-      {
-        cell->get_dof_indices(indices);
-        for (unsigned int a = 0; a < 27; ++a)
-          if (s.u.block(0).locally_owned_elements().is_element(indices[a]) && !s.space->velocity.constraints().is_constrained(indices[a]))
-            s.u.block(0)(indices[a]) = cell->vertex(0)[2] + s.mesh.cell_size(cell->level()) * dofs.get_fe().unit_support_point(a)[2];
-      }
+  Scene s;
+  s.u                          = nodal_velocity(*s.space, [](const dealii::Point<3> &x) { return std::array<double, 3>{{x[2], 0., 0.}}; });
   const ControlPoints velocity = s.coupling.interpolate(s.u);
   EXPECT_LT((velocity.col(0) - s.x.col(2)).cwiseAbs().maxCoeff(), 1e-11);
   EXPECT_LT(velocity.rightCols(2).cwiseAbs().maxCoeff(), 1e-14);
+}
+
+
+TEST(Coupling, DensityIsTheForceOverTheMass)
+{
+  Scene               s;
+  const ControlPoints g = s.coupling.density(s.f);
+  EXPECT_GT(g.norm(), s.f.norm());
+  EXPECT_LT((s.coupling.mass() * g - s.f).norm(), 1e-12 * s.f.norm());
+}
+
+
+TEST(Coupling, SameOnAnyNumberOfRanks)
+{
+  Scene               together, alone(MPI_COMM_SELF);
+  const Waves         waves(4.);
+  const auto          u = nodal_velocity(*together.space, waves), all_u = nodal_velocity(*alone.space, waves);
+  const ControlPoints moments = together.coupling.velocity_moments(u), all_moments = alone.coupling.velocity_moments(all_u);
+  EXPECT_GT(all_moments.norm(), 0.1);
+  EXPECT_LT((moments - all_moments).norm(), 1e-12 * all_moments.norm());
+  EXPECT_LT((together.coupling.interpolate(u) - alone.coupling.interpolate(all_u)).norm(), 1e-12 * alone.coupling.interpolate(all_u).norm());
+
+  SparseMatrix gamma, all_gamma;
+  together.coupling.gradient_matrix(together.coupling.velocity_gradients(u), gamma);
+  alone.coupling.gradient_matrix(alone.coupling.velocity_gradients(all_u), all_gamma);
+  EXPECT_LT((gamma - all_gamma).norm(), 1e-12 * all_gamma.norm());
+
+  const ControlPoints dx = ControlPoints::Ones(alone.x.rows(), 3) - 0.3 * alone.x, g = alone.coupling.density(alone.f);
+  for (const bool motion : {false, true})
+    {
+      FluidBlockVector load, all_load;
+      together.space->reinit(load);
+      alone.space->reinit(all_load);
+      if (motion)
+        together.coupling.spread_with_motion(together.f, dx, g, load);
+      else
+        together.coupling.spread(together.f, load);
+      if (motion)
+        alone.coupling.spread_with_motion(alone.f, dx, g, all_load);
+      else
+        alone.coupling.spread(alone.f, all_load);
+      EXPECT_NEAR(load.l2_norm(), all_load.l2_norm(), 1e-12 * all_load.l2_norm());
+      for (const double phase : {0., 0.7, 1.9})
+        {
+          const auto v = nodal_velocity(*together.space, Waves(4., phase)), w = nodal_velocity(*alone.space, Waves(4., phase));
+          EXPECT_NEAR(load * v, all_load * w, 1e-12 * all_load.l2_norm() * w.l2_norm());
+        }
+    }
 }
 
 

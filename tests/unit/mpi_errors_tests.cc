@@ -41,6 +41,26 @@ TEST(MpiErrors, ExitCodesAndOneMessage)
   EXPECT_EQ(outcome([] { throw 1; }), Outcome(2, first ? "tanktread: unexpected error\nunknown exception\n" : ""));
 }
 
+TEST(MpiErrors, ErrorOfSomeRankIsThrownOnAll)
+{
+  int n_ranks;
+  MPI_Comm_size(MPI_COMM_WORLD, &n_ranks);
+  EXPECT_NO_THROW(on_all_ranks(MPI_COMM_WORLD, [] {}));
+  for (int failing = 0; failing < n_ranks; ++failing)
+    try
+      {
+        on_all_ranks(MPI_COMM_WORLD, [&] {
+          if (this_rank() >= failing)
+            throw NumericalError("rank " + std::to_string(this_rank()));
+        });
+        ADD_FAILURE();
+      }
+    catch (const NumericalError &error)
+      {
+        EXPECT_EQ(error.what(), "rank " + std::to_string(failing));
+      }
+}
+
 TEST(MpiErrors, ErrorOfTheFirstRankIsThrownOnAll)
 {
   int calls = 0;

@@ -7,6 +7,7 @@
 #include <tanktread/shell/shell.h>
 #include <tanktread/shell/skalak.h>
 #include <tanktread/surface/capsule_shape.h>
+#include <tanktread/surface/face_partition.h>
 #include <tanktread/surface/surface_geometry.h>
 
 #include <deal.II/base/parameter_handler.h>
@@ -292,6 +293,37 @@ namespace
     EXPECT_EQ(SparseMatrix(K - first).norm(), 0.);
     EXPECT_EQ(K.valuePtr(), values);
     EXPECT_EQ(K.nonZeros(), example.surface.pattern().n_block_entries());
+  }
+
+  TEST(Shell, PartsOfTheFacesSumToTheWhole)
+  {
+    const Example example;
+    const auto    parts = partition_faces(example.capsule.topology, 3);
+    for (const BendingForm form : {BendingForm::variational, BendingForm::moment_only})
+      {
+        ShellParameters parameters;
+        parameters.form     = form;
+        const Shell   shell = example.shell(parameters);
+        Shell::Energy energy{0., 0.};
+        ControlPoints force = ControlPoints::Zero(42, 3), tangent_force = force, f, g;
+        SparseMatrix  K, part_K, sum = example.surface.pattern().block_matrix();
+        for (const auto &part : parts)
+          {
+            const Shell::Energy e = shell.energy(example.x, part);
+            energy.membrane += e.membrane;
+            energy.bending += e.bending;
+            force += shell.force(example.x, part);
+            shell.force_and_tangent(example.x, part, g, part_K);
+            tangent_force += g;
+            sum.coeffs() += part_K.coeffs();
+          }
+        shell.force_and_tangent(example.x, f, K);
+        EXPECT_NEAR(total(energy), total(shell.energy(example.x)), 1e-13 * total(energy));
+        EXPECT_LT((force - f).norm(), 1e-13 * f.norm());
+        EXPECT_LT((tangent_force - f).norm(), 1e-13 * f.norm());
+        EXPECT_LT((sum.coeffs() - K.coeffs()).matrix().norm(), 1e-13 * K.norm());
+        EXPECT_GT((g - f).norm(), 0.1 * f.norm());
+      }
   }
 
   TEST(Shell, RigidMotionsCostNothing)

@@ -42,8 +42,9 @@ namespace
       : parameters(solver_parameters)
       , shape(shifted_capsule(capsule))
       , surface(shape.topology, triangle_quadrature(3), Derivatives::second)
-      , shell(surface, {}, moduli, shape.control_points)
-      , coupling(surface, shell.reference_weights())
+      , serial_shell(surface, {}, moduli, shape.control_points)
+      , shell(serial_shell, shape.topology, MPI_COMM_WORLD)
+      , coupling(surface, serial_shell.reference_weights())
       , volume(enclosed_volume(surface, shape.control_points))
       , fluid(MPI_COMM_WORLD, side, mesh_parameters(finest_cell))
       , solver(parameters, shell, surface, coupling, volume, {shear_rate}, timings)
@@ -66,7 +67,8 @@ namespace
     SolverParameters   parameters;
     FittedShape        shape;
     SubdivisionSurface surface;
-    Shell              shell;
+    Shell              serial_shell;
+    DistributedShell   shell;
     Coupling           coupling;
     double             volume;
     Fluid              fluid;
@@ -108,9 +110,157 @@ namespace
   double
   largest_velocity(const FluidBlockVector &u)
   {
-    return std::max({u.block(0).linfty_norm(), u.block(1).linfty_norm(), u.block(2).linfty_norm()});
+    return u.block(velocity_block).linfty_norm();
   }
 } // namespace
+
+
+TEST(DistributedShell, SumsTheFacesOfAllRanks)
+{
+  Scene scene({5., 0.2}, 1., ellipsoid(1.3, 1.1, 1.), tight(1e-8, 1e-8));
+  scene.state.x.col(0) += 0.1 * scene.state.x.col(2);
+  const unsigned int n_faces = scene.shell.faces().size();
+  EXPECT_EQ(dealii::Utilities::MPI::sum(n_faces, MPI_COMM_WORLD), scene.surface.n_faces());
+  const Shell::Energy e = scene.shell.energy(scene.state.x), serial_e = scene.serial_shell.energy(scene.state.x);
+  EXPECT_NEAR(e.membrane, serial_e.membrane, 1e-13 * serial_e.membrane);
+  EXPECT_NEAR(e.bending, serial_e.bending, 1e-13 * serial_e.bending);
+  ControlPoints f, serial_f;
+  SparseMatrix  K, serial_K;
+  for (unsigned int again = 0; again < 2; ++again) // the second time with a matrix that has the pattern
+    {
+      scene.shell.force_and_tangent(scene.state.x, f, K);
+      scene.serial_shell.force_and_tangent(scene.state.x, serial_f, serial_K);
+      EXPECT_LT((f - serial_f).norm(), 1e-13 * serial_f.norm());
+      EXPECT_LT((scene.shell.force(scene.state.x) - serial_f).norm(), 1e-13 * serial_f.norm());
+      EXPECT_LT((K.coeffs() - serial_K.coeffs()).matrix().norm(), 1e-13 * serial_K.norm());
+    }
+}
+
+
+TEST(DistributedShell, FailsOnAllRanksAlike)
+{
+  Scene scene({5., 0.2}, 1., {}, tight(1e-8, 1e-8));
+  scene.state.x(3, 1) = std::nan(""); // in the faces of some ranks only
+  ControlPoints f;
+  SparseMatrix  K;
+  EXPECT_THROW(scene.shell.force(scene.state.x), NumericalError);
+  EXPECT_THROW(scene.shell.energy(scene.state.x), NumericalError);
+  EXPECT_THROW(scene.shell.force_and_tangent(scene.state.x, f, K), NumericalError);
+}
+
+
+namespace
+{
+  SparseMatrix
+  random_blocks(const SubdivisionSurface &surface, const double size)
+  {
+    SparseMatrix matrix = surface.pattern().block_matrix();
+    for (Eigen::Index k = 0; k < matrix.nonZeros(); ++k)
+      matrix.valuePtr()[k] = size * std::sin(1000. * k);
+    return matrix;
+  }
+
+  ControlPoints
+  smooth_field(const ControlPoints &x)
+  {
+    ControlPoints result(x.rows(), 3);
+    for (Eigen::Index i = 0; i < x.rows(); ++i)
+      result.row(i) << std::sin(2. * x(i, 1)), std::cos(x(i, 2)), std::sin(x(i, 0) + x(i, 2));
+    return result;
+  }
+} // namespace
+
+
+TEST(BlockFactorisation, Solves)
+{
+  Scene              scene({5., 0.2}, 1., {}, tight(1e-8, 1e-8));
+  BlockFactorisation factors;
+  SparseMatrix       matrix = random_blocks(scene.surface, 1.);
+  for (const double shift : {20., 0.5}) // dominated by the diagonal, and not
+    {
+      matrix += SparseMatrix(shift * Eigen::VectorXd::Ones(matrix.rows()).asDiagonal().toDenseMatrix().sparseView());
+      const Eigen::VectorXd b = flat(smooth_field(scene.state.x)), x = factors.solve((factors.factorise(matrix, "It"), b));
+      EXPECT_LT((matrix * x - b).norm(), 1e-9 * b.norm());
+    }
+  try
+    {
+      factors.factorise(scene.surface.pattern().block_matrix(), "It");
+      ADD_FAILURE();
+    }
+  catch (const NumericalError &error)
+    {
+      EXPECT_STREQ(error.what(), "It is singular.");
+    }
+}
+
+
+TEST(ImplicitShell, IsKeptWhileItServes)
+{
+  Scene         scene({5., 0.2}, 1., {}, tight(1e-8, 1e-8));
+  ImplicitShell implicit_shell(MPI_COMM_WORLD);
+  const auto   &Z = scene.coupling.mass();
+  EXPECT_FALSE(implicit_shell.serves(0.1));
+  const SparseMatrix K = random_blocks(scene.surface, 1e-3);
+  implicit_shell.renew(Z, K, 0.1);
+  for (const auto &[tau, serves] : {std::pair<double, bool>{0.1, true}, {0.149, true}, {0.151, false}, {0.067, true}, {0.066, false}})
+    EXPECT_EQ(implicit_shell.serves(tau), serves) << tau;
+
+  // Z (Z + tau K)^{-1}, on the first rank
+  const ControlPoints force = smooth_field(scene.state.x), velocity = implicit_shell.velocity(force);
+  if (is_root())
+    {
+      EXPECT_LT((Z * velocity + nodal(0.1 * (K * flat(velocity))) - force).norm(), 1e-12 * force.norm());
+      EXPECT_LT((implicit_shell.damped(force) - Z * velocity).norm(), 1e-12 * force.norm());
+    }
+
+  implicit_shell.watch({true, 10, 1., 1e-2});
+  implicit_shell.watch({true, 24, 1., 1e-4}); // 22 + 1 allowed, but 5 a decade
+  EXPECT_FALSE(implicit_shell.serves(0.1));
+  implicit_shell.renew(Z, K, 0.1);
+  implicit_shell.watch({true, 10, 1., 1e-2});
+  implicit_shell.watch({true, 22, 1., 1e-4});
+  EXPECT_TRUE(implicit_shell.serves(0.1));
+  implicit_shell.discard();
+  EXPECT_FALSE(implicit_shell.serves(0.1));
+  EXPECT_EQ(implicit_shell.n_renewals(), 2u);
+
+  SparseMatrix minus_Z = scene.surface.pattern().block_matrix();
+  add_for_three_components(Z, minus_Z);
+  minus_Z *= -1.;
+  EXPECT_THROW(implicit_shell.renew(Z, minus_Z, 1.), NumericalError);
+  EXPECT_FALSE(implicit_shell.serves(1.));
+}
+
+
+TEST(ShellMotion, IsAsAccurateAsWanted)
+{
+  Scene               scene({5., 0.2}, 1., {}, tight(1e-8, 1e-8));
+  const ControlPoints f = scene.coupling.mass() * smooth_field(scene.state.x);
+  scene.coupling.move(scene.state.x);
+  VelocityGradients gradients(scene.coupling.n_local_points(), 9);
+  for (Eigen::Index q = 0; q < gradients.rows(); ++q)
+    gradients.row(q) << 0.5, 0.3, 1., std::sin(0.1 * q), -0.5, 0.4, 0.2, std::cos(0.1 * q), 0.;
+  SparseMatrix gamma;
+  scene.coupling.gradient_matrix(gradients, gamma);
+  const ShellMotion exact(scene.coupling, 0.1 * gamma, 0.);
+  EXPECT_EQ(exact.n_terms(), 0u);
+  const ControlPoints dx = exact.solve(f);
+  EXPECT_LT((exact.times(dx) - f).norm(), 1e-12 * f.norm());
+
+  unsigned int n_terms = 1;
+  for (const double accuracy : {1e-2, 1e-4, 1e-6})
+    {
+      const ShellMotion motion(scene.coupling, 0.1 * gamma, accuracy);
+      EXPECT_GT(motion.n_terms(), n_terms);
+      n_terms            = motion.n_terms();
+      const double error = (motion.solve(f) - dx).norm() / dx.norm();
+      if (is_root())
+        std::cout << "accuracy " << accuracy << ": " << n_terms << " terms, error on a smooth field " << error << std::endl;
+      EXPECT_LT(error, accuracy);
+      EXPECT_LT((motion.solve(2. * f + scene.state.x) - 2. * motion.solve(f) - motion.solve(scene.state.x)).norm(), 1e-13 * dx.norm());
+    }
+  EXPECT_EQ(ShellMotion(scene.coupling, 5. * gamma, 1e-2).n_terms(), 0u); // the series diverges
+}
 
 
 TEST(ConstantPressureJump, DrivesNoFlow)
@@ -120,15 +270,15 @@ TEST(ConstantPressureJump, DrivesNoFlow)
   const double p0   = 3.7;
   scene.state.force = p0 * volume_gradient(scene.surface, scene.state.x);
   scene.coupling.move(scene.state.x);
+  ImplicitShell         implicit_shell(MPI_COMM_WORLD);
   const LinearisedShell shell(scene.shell,
                               scene.surface,
                               scene.coupling,
                               scene.state,
                               ControlPoints::Zero(scene.state.x.rows(), 3),
-                              VelocityGradients::Zero(scene.surface.n_points(), 9),
-                              PointDerivatives::frozen,
-                              0.,
-                              1.);
+                              VelocityGradients::Zero(scene.coupling.n_local_points(), 9),
+                              Linearisation{0., 1., 0., PointDerivatives::frozen},
+                              implicit_shell);
   FluidBlockVector      rhs = monolithic_vector(scene.fluid.space(), scene.state.x.rows()), u(rhs);
   scene.coupling.spread(scene.state.force, rhs);
   const MonolithicOperator       matrix(scene.fluid.stokes(), shell);
@@ -208,6 +358,40 @@ TEST(Newton, ConvergesQuadratically)
 }
 
 
+TEST(Newton, FindsTheSameWithAnOldImplicitOperator)
+{
+  Scene scene({5., 0.2}, 1., ellipsoid(1.3, 1.1, 1.), tight(1e-7, 1e-3));
+  scene.solver.solve_flow(scene.state);
+  const State         start = scene.state;
+  const ControlPoints x_n   = start.x;
+  State               fresh = start, other = start;
+  NewtonSolver        solver(scene.parameters, scene.shell, scene.surface, scene.coupling, scene.volume, {1.}, scene.timings);
+  solver.attach(scene.fluid);
+  const NewtonReport of_fresh = scene.solver.solve(fresh, x_n, 0.1);
+  print("new operator", of_fresh);
+  ASSERT_TRUE(of_fresh.converged);
+
+  // An operator made for another shape and a shorter step.
+  other.x *= Eigen::DiagonalMatrix<double, 3>(1.15, 0.9, 0.95);
+  other.force               = scene.shell.force(other.x);
+  const ControlPoints x_old = other.x;
+  ASSERT_EQ(solver.implicit_shell().n_renewals(), 0u);
+  solver.solve(other, x_old, 0.07);
+  const unsigned int renewals = solver.implicit_shell().n_renewals();
+  ASSERT_TRUE(solver.implicit_shell().serves(0.1));
+  State              old    = start;
+  const NewtonReport of_old = solver.solve(old, x_n, 0.1);
+  print("old operator", of_old);
+  ASSERT_TRUE(of_old.converged);
+  EXPECT_LT(solver.implicit_shell().n_renewals() - renewals, of_old.newton_iterations);
+  // Residuals are velocities: errors of x are about tau times the tolerance.
+  const double difference = (old.x - fresh.x).norm() / std::sqrt(x_n.rows());
+  if (is_root())
+    std::cout << "difference of the control points " << difference << std::endl;
+  EXPECT_LT(difference, 0.1 * 1e-7);
+}
+
+
 TEST(Newton, ReportsWhatItCannotSolve)
 {
   Scene            scene({5., 0.2}, 1., {}, tight(1e-9, 1e-3));
@@ -233,7 +417,7 @@ TEST(BackwardEuler, EnergyFallsWithoutFlow)
       Scene scene({10., 1.}, 0., ellipsoid(1.4, 1.2, 1.), tight(1e-6, 1e-3));
       scene.solver.solve_flow(scene.state);
       const auto energy = [&]() {
-        const Shell::Energy e = scene.shell.energy(scene.state.x);
+        const Shell::Energy e = scene.serial_shell.energy(scene.state.x);
         return e.membrane + e.bending;
       };
       double before = energy();

@@ -4,6 +4,7 @@
 #include <tanktread/base/exceptions.h>
 #include <tanktread/surface/capsule_shape.h>
 #include <tanktread/surface/contour.h>
+#include <tanktread/surface/face_partition.h>
 #include <tanktread/surface/interior.h>
 #include <tanktread/surface/subdivision_surface.h>
 #include <tanktread/surface/surface_geometry.h>
@@ -15,12 +16,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <functional>
 #include <map>
 #include <random>
+#include <set>
 
 namespace
 {
@@ -864,4 +867,74 @@ TEST(Interior, AgreesWithTheEllipsoid)
     }
   EXPECT_GT(checked, 3900u);
   EXPECT_GT(inside, 400u);
+}
+
+TEST(FacePartition, CoversEveryFaceOnceInEqualParts)
+{
+  for (const unsigned int level : {2u, 3u})
+    for (const unsigned int n_parts : {1u, 2u, 3u, 4u, 7u, 16u})
+      {
+        const TriangleMesh topology = icosphere(level);
+        const auto         parts    = partition_faces(topology, n_parts);
+        ASSERT_EQ(parts.size(), n_parts);
+        std::vector<unsigned int> times(topology.faces.size(), 0);
+        for (const auto &part : parts)
+          {
+            EXPECT_TRUE(std::is_sorted(part.begin(), part.end()));
+            EXPECT_NEAR(part.size() * double(n_parts) / times.size(), 1., 0.1) << n_parts << " parts, level " << level;
+            for (const unsigned int face : part)
+              ++times[face];
+          }
+        EXPECT_EQ(times, std::vector<unsigned int>(times.size(), 1));
+        EXPECT_EQ(parts, partition_faces(topology, n_parts));
+      }
+}
+
+TEST(FacePartition, PartsHaveShortBoundaries)
+{
+  // Halves of a sphere of area 4 pi are divided by a circle of length 2 pi at best; parts taken by face number would have far more edges between them.
+  const TriangleMesh                                 topology = icosphere(3);
+  const auto                                         parts    = partition_faces(topology, 2);
+  std::map<std::set<int>, std::vector<unsigned int>> faces_of_edge;
+  for (unsigned int p = 0; p < 2; ++p)
+    for (const unsigned int face : parts[p])
+      for (unsigned int i = 0; i < 3; ++i)
+        faces_of_edge[{topology.faces[face][i], topology.faces[face][(i + 1) % 3]}].push_back(p);
+  double length = 0.;
+  for (const auto &[edge, p] : faces_of_edge)
+    if (p[0] != p[1])
+      length += (topology.vertices[*edge.begin()] - topology.vertices[*edge.rbegin()]).norm();
+  EXPECT_LT(length, 1.5 * 2. * M_PI);
+}
+
+TEST(FacePartition, HandlesMorePartsThanFaces)
+{
+  const TriangleMesh topology = octahedron();
+  EXPECT_THROW(partition_faces(topology, 0), std::logic_error);
+  for (const unsigned int n_parts : {8u, 11u})
+    {
+      const auto parts = partition_faces(topology, n_parts);
+      ASSERT_EQ(parts.size(), n_parts);
+      for (unsigned int p = 0; p < n_parts; ++p)
+        EXPECT_EQ(parts[p], p < 8 ? std::vector<unsigned int>{p} : std::vector<unsigned int>{});
+    }
+}
+
+TEST(AssemblyPattern, AddsAMatrixForThreeComponents)
+{
+  const TriangleMesh       mesh = flipped_icosphere();
+  const SubdivisionSurface surface(mesh, triangle_quadrature(3), Derivatives::first);
+  const ControlPoints      x      = positions(mesh);
+  const SparseMatrix       mass   = mass_matrix(surface, area_weights(surface, x));
+  SparseMatrix             blocks = volume_hessian(surface, x);
+  const ControlPoints      field  = random_field(x.rows(), 1., 3);
+  const auto               times  = [](const SparseMatrix &matrix, const ControlPoints &y) {
+    const VectorXd product = matrix * Eigen::Map<const VectorXd>(y.data(), y.size());
+    return ControlPoints(Eigen::Map<const ControlPoints>(product.data(), y.rows(), 3));
+  };
+  const ControlPoints before = times(blocks, field);
+  add_for_three_components(mass, blocks);
+  const ControlPoints wanted = before + mass * field;
+  EXPECT_LT((times(blocks, field) - wanted).norm(), 1e-14 * wanted.norm());
+  EXPECT_THROW(add_for_three_components(blocks, blocks), std::logic_error);
 }

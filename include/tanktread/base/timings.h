@@ -12,7 +12,7 @@ namespace tanktread
 {
   /**
    * Adds up wall time (s) and calls of named parts. It never communicates: each rank has its own figures. Parts that contain each other are both counted in
-   * full.
+   * full. A name that begins with "- " is that of a piece of the part above it, the last one before it without.
    *
    *     Timings timings;
    *     {
@@ -23,16 +23,17 @@ namespace tanktread
   class Timings
   {
   public:
-    /** Measures from its construction to its destruction. */
+    /** Measures from its construction to its destruction; nothing if it is given a null pointer. */
     class Scope
     {
     public:
       Scope(Timings &timings, const std::string &name);
+      Scope(Timings *timings, const char *name);
       Scope(const Scope &) = delete;
       ~Scope();
 
     private:
-      Timings                                    &timings;
+      Timings *const                              timings;
       const std::size_t                           part;
       const std::chrono::steady_clock::time_point start;
     };
@@ -54,11 +55,22 @@ namespace tanktread
     const std::vector<Part> &
     parts() const;
 
-    /** Table of all parts: calls, seconds and share of the time since construction. */
+    /** Seconds in that part, 0 if there is none of that name. */
+    double
+    seconds(const std::string &name) const;
+
+    /** Seconds in that part outside its pieces. */
+    double
+    rest(const std::string &name) const;
+
+    /** Table of all parts: calls, seconds and share of the time since construction. Below the pieces of a part a row says what they have left. */
     std::string
     table() const;
 
   private:
+    /** Index of the part, or the number of parts. */
+    std::size_t
+    find(const std::string &name) const;
     std::size_t
     find_or_add(const std::string &name);
 

@@ -4,15 +4,17 @@
 #ifndef tanktread_coupling_coupling_h
 #define tanktread_coupling_coupling_h
 
-#include <Eigen/SparseCholesky>
+#include <tanktread/base/vector4.h>
 #include <tanktread/fluid/point_interpolation.h>
+#include <tanktread/surface/mass_inverse.h>
 #include <tanktread/surface/subdivision_surface.h>
 
 #include <memory>
+#include <vector>
 
 namespace tanktread
 {
-  /** Velocity gradients at the coupling's points, n_points x 9: entry 3 c + d is du_c/dx_d. */
+  /** Velocity gradients at the coupling's points on this rank, n_local_points x 9: entry 3 c + d is du_c/dx_d. */
   using VelocityGradients = Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor>;
 
   /**
@@ -21,7 +23,8 @@ namespace tanktread
    *     interpolation  J(x) u = M^{-1} S^T W Phi u        (velocity of the control points)
    *     spreading      R(x) f = Phi^T W S M^{-1} f = J^T f (load vector of nodal forces f)
    *
-   * so the power f . J u = (R f) . u agrees to rounding. Nodal fields are NP x 3 and replicated on all ranks; calls that take fluid vectors are collective.
+   * so the power f . J u = (R f) . u agrees to rounding. Nodal fields are NP x 3 and replicated on all ranks; what belongs to a point is on the rank of its fluid cell
+   * alone, so sums over points end in one sum over the ranks. Calls that take fluid vectors or velocity gradients are collective.
    */
   class Coupling
   {
@@ -32,13 +35,20 @@ namespace tanktread
      */
     Coupling(const SubdivisionSurface &surface, Eigen::VectorXd reference_weights);
 
-    /** To be called for every new fluid mesh, before move(). */
+    /** To be called for every new fluid mesh, before move(). Keeps `space` by reference. */
     void
     attach(const TaylorHoodSpace &space);
 
-    /** Moves the quadrature points to S x. Throws NumericalError when one leaves the box. */
+    /** Moves the quadrature points to S x. Collective. Throws NumericalError when one leaves the box. */
     void
     move(const ControlPoints &x);
+
+    /** Number of quadrature points on this rank since move(). */
+    unsigned int
+    n_local_points() const
+    {
+      return interpolation_->local_points().size();
+    }
 
     /** S x as points of the fluid. */
     std::vector<dealii::Point<3>>
@@ -52,7 +62,7 @@ namespace tanktread
     ControlPoints
     interpolate(const FluidBlockVector &u) const;
 
-    /** grad u at the points, from inside the cells that they lie in. */
+    /** grad u at the points of this rank, from inside the cells that they lie in. */
     VelocityGradients
     velocity_gradients(const FluidBlockVector &u) const;
 
@@ -72,9 +82,13 @@ namespace tanktread
     void
     spread_with_motion(const ControlPoints &f, const ControlPoints &dx, const ControlPoints &g, FluidBlockVector &load) const;
 
-    /** S^T W grad u S, 3 NP x 3 NP: M^{-1} times it is the change of J u when the shell moves. */
-    SparseMatrix
-    gradient_matrix(const VelocityGradients &gradients) const;
+    /**
+     * S^T W grad u S, 3 NP x 3 NP: M^{-1} times it is the change of J u when the shell moves.
+     *
+     * @param result takes the pattern surface().pattern().block_matrix(), without allocation if it has as many entries already, which must then be these.
+     */
+    void
+    gradient_matrix(const VelocityGradients &gradients, SparseMatrix &result) const;
 
     /** M, NP x NP. */
     const SparseMatrix &
@@ -89,16 +103,32 @@ namespace tanktread
     }
 
   private:
-    /** S^T W v for values at the points. */
-    ControlPoints
-    moments(const ControlPoints &values) const;
+    /** Consecutive local points [begin, end) in one face. */
+    struct FacePoints
+    {
+      unsigned int face, begin, end;
+    };
 
-    const SubdivisionSurface                                                &surface_;
-    Eigen::VectorXd                                                          weights_;
-    SparseMatrix                                                             S_transposed_;
-    SparseMatrix                                                             mass_;
-    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double, Eigen::ColMajor, int>> mass_factorisation_;
-    std::unique_ptr<PointInterpolation>                                      interpolation_;
+    void
+    set_points(const ControlPoints &x, std::vector<dealii::Point<3>> &points) const;
+
+    /** Adds S^T W grad u S of one face's points. */
+    void
+    add_gradients(const FacePoints &points, const VelocityGradients &gradients, double *matrix_values) const;
+
+    const SubdivisionSurface           &surface_;
+    Eigen::VectorXd                     weights_;
+    SparseMatrix                        mass_;
+    MassInverse                         mass_inverse_;
+    MPI_Comm                            communicator_ = MPI_COMM_NULL;
+    std::unique_ptr<PointInterpolation> interpolation_;
+    std::vector<FacePoints>             local_faces_;
+
+    // Memory of the calls, kept between them.
+    std::vector<dealii::Point<3>> points_;
+    mutable ControlPoints         density_;
+    mutable std::vector<double>   values_, moments_;
+    mutable std::vector<Vector4>  face_;
   };
 
   /**

@@ -10,7 +10,7 @@
 
 namespace tanktread
 {
-  /** A mesh and the spaces, matrices and multigrid hierarchy on it, rebuilt together whenever the mesh changes. */
+  /** A mesh and the spaces, operators and multigrid levels on it, rebuilt together whenever the mesh changes. */
   class Fluid
   {
   public:
@@ -18,19 +18,24 @@ namespace tanktread
       : mesh_(communicator, side, parameters)
     {}
 
-    /** Refines around `points`; see FluidMesh::adapt(). Returns true if the mesh changed: all vectors of before are void then. Collective. */
+    /** Refines around `points`; see FluidMesh::aim_at(). Returns true if the mesh changed: all vectors of before are void then. Collective. */
     bool
     adapt(const std::vector<dealii::Point<3>> &points)
     {
+      if (!mesh_.aim_at(points))
+        return false;
       // What stands on the mesh must go before the mesh changes.
       preconditioner_.reset();
       stokes_.reset();
       space_.reset();
-      const bool changed = mesh_.adapt(points);
-      space_             = std::make_unique<TaylorHoodSpace>(mesh_);
-      stokes_            = std::make_unique<StokesOperator>(*space_);
-      preconditioner_    = std::make_unique<StokesPreconditioner>(*stokes_);
-      return changed;
+      mesh_.restart();
+      multigrid_.start(mesh_);
+      while (!mesh_.on_last_rung())
+        multigrid_.climb(mesh_);
+      space_          = std::make_unique<TaylorHoodSpace>(mesh_, multigrid_.space());
+      stokes_         = std::make_unique<StokesOperator>(*space_);
+      preconditioner_ = std::make_unique<StokesPreconditioner>(*space_, multigrid_);
+      return true;
     }
 
     const FluidMesh &
@@ -48,6 +53,11 @@ namespace tanktread
     {
       return *stokes_;
     }
+    const Multigrid<float> &
+    multigrid() const
+    {
+      return multigrid_;
+    }
     const StokesPreconditioner &
     preconditioner() const
     {
@@ -56,6 +66,7 @@ namespace tanktread
 
   private:
     FluidMesh                             mesh_;
+    Multigrid<float>                      multigrid_;
     std::unique_ptr<TaylorHoodSpace>      space_;
     std::unique_ptr<StokesOperator>       stokes_;
     std::unique_ptr<StokesPreconditioner> preconditioner_;

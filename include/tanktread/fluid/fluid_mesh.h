@@ -16,7 +16,7 @@
 
 namespace tanktread
 {
-  /** Level and integer position of a cube: along each axis it covers [i h_l, (i+1) h_l] from the lower corner of the box, h_l = coarsest / 2^l. */
+  /** Level and integer position of a cube: along each axis it covers [i h_l, (i+1) h_l] from the lower corner of the box, h_0 being that of rung 0 and h_l = h_0 / 2^l. */
   struct CellKey
   {
     unsigned int       level;
@@ -30,8 +30,9 @@ namespace tanktread
   /**
    * Cube of side `side` centred at the origin, periodic in x and y, walls at z = ± side/2 (boundary ids 4 and 5, as deal.II colours them).
    *
-   * The coarse mesh has round(side / coarsest cell) cells along each axis, at least two because a cell must not be its own neighbour; the finest
-   * level is the first whose cells are not larger than asked for. All calls are collective.
+   * The coarsest cells asked for are round(side / coarsest cell) along each axis, at least two because a cell must not be its own neighbour; the finest
+   * level is the first whose cells are not larger than asked for. For the multigrid's sake the mesh is grown from few cells, four or fewer along each axis where that number
+   * can be halved so far, in rungs: rung l has the cells of the finished mesh down to level l, 2:1 balanced. All calls are collective.
    */
   class FluidMesh
   {
@@ -41,11 +42,29 @@ namespace tanktread
     FluidMesh(MPI_Comm communicator, double side, const FluidMeshParameters &parameters);
 
     /**
-     * Makes the mesh the coarsest one, 2:1 balanced, in which every cell closer than band_width h (in each coordinate) to one of `points` has the
-     * finest size h. The result depends on the points alone, not on the mesh before. Returns true if the mesh changed.
+     * Chooses the mesh to climb to: the coarsest one, 2:1 balanced, in which every cell closer than band_width h (in each coordinate) to one of `points` has the
+     * finest size h. It depends on the points alone, not on the mesh before. Returns false if that is the mesh chosen last.
      *
      * @param points on the shell, the same on all ranks, anywhere in x and y (wrapped periodically). Throws NumericalError if one is not between the walls.
      */
+    bool
+    aim_at(const std::vector<dealii::Point<3>> &points);
+
+    /** Back to the first rung: a uniform mesh of n_rung_0() cells along each axis. Nothing may be attached to the triangulation. */
+    void
+    restart();
+
+    /** Refines to the next rung, each cell divided once or not at all. Not to be called on the last one. */
+    void
+    climb();
+
+    bool
+    on_last_rung() const
+    {
+      return rung_ == finest_level_;
+    }
+
+    /** aim_at() and, if the mesh is another one, all the way up. Returns true if the mesh changed. */
     bool
     adapt(const std::vector<dealii::Point<3>> &points);
 
@@ -79,6 +98,11 @@ namespace tanktread
     {
       return triangulation_;
     }
+    Triangulation &
+    triangulation()
+    {
+      return triangulation_;
+    }
     double
     side() const
     {
@@ -88,6 +112,17 @@ namespace tanktread
     finest_level() const
     {
       return finest_level_;
+    }
+    /** Level of the coarsest cells of a finished mesh. */
+    unsigned int
+    coarsest_level() const
+    {
+      return coarsest_level_;
+    }
+    int
+    n_rung_0() const
+    {
+      return n_rung_0_;
     }
     MPI_Comm
     communicator() const
@@ -105,8 +140,10 @@ namespace tanktread
     MPI_Comm      communicator_;
     double        side_;
     double        band_width_;
-    int           n_coarse_;
-    unsigned int  finest_level_;
+    int           n_rung_0_;
+    unsigned int  coarsest_level_ = 0, finest_level_, rung_ = 0;
+    bool          aimed_ = false; // has a mesh been chosen?
+    KeySet        wanted_;        // of the mesh chosen last
     Triangulation triangulation_;
   };
 } // namespace tanktread

@@ -6,103 +6,79 @@
 
 #include <deal.II/base/point.h>
 
+#include <tanktread/fluid/cell_locator.h>
 #include <tanktread/fluid/taylor_hood_space.h>
 
-#include <array>
-#include <cstdint>
-#include <unordered_map>
 #include <vector>
 
 namespace tanktread
 {
   /**
-   * Finds cells by integer coordinates: a point's position on level l is floor((x - corner) / h_l), so the search is a few hash look-ups, has no tolerance and
-   * gives each point exactly one cell (the upper one if it lies on a face) on exactly one rank.
-   */
-  class CellLocator
-  {
-  public:
-    struct Location
-    {
-      int              cell = -1; // index among the locally owned active cells in deal.II's order; -1: not on this rank
-      dealii::Point<3> unit;      // position in the unit cell
-    };
-
-    explicit CellLocator(const FluidMesh &mesh);
-
-    /** The point is wrapped into the box in x and y; throws NumericalError if it is not between the walls. */
-    Location
-    locate(const dealii::Point<3> &point) const;
-
-  private:
-    const FluidMesh                       &mesh_;
-    std::unordered_map<std::uint64_t, int> cells_;
-    std::vector<unsigned int>              levels_; // that occur on this rank, finest first
-  };
-
-  /**
-   * The matrices Phi: velocity coefficients -> velocity at points X_q, and its gradient, with the constraints resolved, so that they act on condensed vectors and their
-   * transposes give condensed load vectors. `reinit` for every new set of points; all point arrays are replicated on all ranks and have 3 (or 9) doubles a point.
+   * The matrix Phi: free velocity nodes -> velocity at points X_q, and its gradient; the transposes give load vectors. `reinit` for every new set of points.
+   *
+   * Each rank has the points in its own cells, local_points(), and arrays of results and of loads hold those only, in this order, with 3 (or 9) numbers a point.
+   * Velocities and loads are vectors of TaylorHoodSpace::reinit(), without values at ghosts.
    */
   class PointInterpolation
   {
   public:
+    /** `space` is kept by reference. */
     explicit PointInterpolation(const TaylorHoodSpace &space);
 
-    /** Locates `points` (the same on all ranks) and evaluates shape functions. Collective. Throws NumericalError if a point is in no cell. */
+    /** Finds the cells of `points` (the same on all ranks). Collective. Throws NumericalError, on all ranks, unless each point is in one cell of one rank. */
     void
     reinit(const std::vector<dealii::Point<3>> &points);
 
-    /** values[3 q + c] = u_c(X_q). Collective; the result is the same on all ranks. `velocity`: condensed coefficients. */
+    /** Which of the points are on this rank, ascending. */
+    const std::vector<unsigned int> &
+    local_points() const
+    {
+      return local_points_;
+    }
+
+    /** values[3 r + c] = u_c at the r-th local point. Collective. */
     void
     values(const FluidBlockVector &velocity, std::vector<double> &values) const;
 
-    /** As values(), and gradients[9 q + 3 c + d] = du_c/dx_d (X_q). */
+    /** gradients[9 r + 3 c + d] = du_c/dx_d, from inside the cell. Collective. */
+    void
+    gradients(const FluidBlockVector &velocity, std::vector<double> &gradients) const;
+
+    /** Both at once. */
     void
     values_and_gradients(const FluidBlockVector &velocity, std::vector<double> &values, std::vector<double> &gradients) const;
 
     /**
-     * The transpose: adds to the velocity blocks of `load` the functional v -> sum_q F_q . v(X_q) + sum_q G_q : grad v(X_q).
+     * The transpose: adds to the velocity of `load` the functional v -> sum_q F_q . v(X_q) + sum_q G_q : grad v(X_q). Collective.
      *
-     * @param forces 3 n_points doubles F. @param moments 9 n_points doubles G in the layout of the gradients, or empty.
+     * @param forces F at the local points. @param moments G in the layout of the gradients, or empty on all ranks.
      */
     void
     add_load(const std::vector<double> &forces, const std::vector<double> &moments, FluidBlockVector &load) const;
 
-    unsigned int
-    n_points() const
-    {
-      return n_points_;
-    }
-
   private:
-    /** One non-zero of a row: local index in the ghosted vector, shape value and gradient. */
-    struct Entry
+    /** Points of one cell: order_[begin], ..., order_[end - 1]. */
+    struct Group
     {
-      unsigned int          index;
-      double                value;
-      std::array<double, 3> gradient;
+      unsigned int cell, begin, end;
     };
 
-    /** One degree of freedom of a cell expressed by unconstrained ones. */
-    struct ResolvedDof
-    {
-      std::vector<std::pair<unsigned int, double>> masters; // local index, weight
-    };
-    using ResolvedCell = std::array<ResolvedDof, 27>; // lexicographic
+    /** Fills order_ and groups_. */
+    void
+    sort_by_cell();
 
-    const ResolvedCell &
-    resolve(int cell);
+    /** Calls evaluate_at(r, nodal velocities of its cell, shape functions) for every local point r. */
+    template <typename Function>
+    void
+    for_groups(const FluidBlockVector &velocity, const Function &evaluate_at) const;
 
-    const TaylorHoodSpace                                   &space_;
-    CellLocator                                              locator_;
-    std::vector<dealii::DoFHandler<3>::active_cell_iterator> cells_;
-    std::unordered_map<int, ResolvedCell>                    resolved_;
-    std::vector<unsigned int>                                lexicographic_to_hierarchic_;
-    unsigned int                                             n_points_ = 0;
-    std::vector<unsigned int>                                local_points_;
-    std::vector<std::size_t>                                 row_start_;
-    std::vector<Entry>                                       entries_;
+    const TaylorHoodSpace        &space_;
+    CellLocator                   locator_;
+    std::vector<unsigned int>     local_points_, cells_; // and the cells of the local points
+    std::vector<dealii::Point<3>> unit_;                 // their positions there
+    std::vector<unsigned int>     order_;                // local points by cell, so that each cell's nodes are fetched once
+    std::vector<Group>            groups_;
+    std::vector<unsigned int>     starts_; // for sorting
   };
 } // namespace tanktread
 

@@ -4,50 +4,47 @@
 #ifndef tanktread_fluid_stokes_preconditioner_h
 #define tanktread_fluid_stokes_preconditioner_h
 
-#include <deal.II/lac/diagonal_matrix.h>
-#include <deal.II/lac/precondition.h>
-#include <deal.II/lac/trilinos_precondition.h>
-
+#include <tanktread/base/timings.h>
+#include <tanktread/fluid/multigrid.h>
 #include <tanktread/fluid/stokes_operator.h>
 
 namespace tanktread
 {
   /**
    * Upper block-triangular: pressure first, z_p = -mu M_p^{-1} r_p (the mass matrix is spectrally equivalent to the Schur complement B A^{-1} B^T / mu),
-   * then one algebraic multigrid V-cycle for each velocity component of r_u + B^T z_p. The two halves are offered separately because the
-   * monolithic system has more to say between them.
+   * then one multigrid V-cycle for the velocities of r_u + B^T z_p. All in single precision, which costs no iteration.
    */
   class StokesPreconditioner
   {
   public:
-    explicit StokesPreconditioner(const StokesOperator &stokes);
+    /** Keeps both by reference; the multigrid has climbed to the mesh of `space`. Collective. */
+    StokesPreconditioner(const TaylorHoodSpace &space, Multigrid<float> &multigrid);
 
-    /** Approximates M_p^{-1} src by a fixed Chebyshev polynomial, so it is a linear map. */
+    /** dst = P^{-1} src on blocks 0 and 1. Collective. @param timings where to add what its parts take, or null. */
     void
-    apply_inverse_pressure_mass(FluidVector &dst, const FluidVector &src) const;
+    vmult(FluidBlockVector &dst, const FluidBlockVector &src, Timings *timings = nullptr) const;
 
-    /** Approximates A^{-1} src for one component. */
-    void
-    apply_inverse_laplace(FluidVector &dst, const FluidVector &src) const;
-
-    /** dst = P^{-1} src on blocks 0 to 3. */
-    void
-    vmult(FluidBlockVector &dst, const FluidBlockVector &src) const;
-
-    const StokesOperator &
-    stokes() const
+    const TaylorHoodSpace &
+    space() const
     {
-      return stokes_;
+      return space_;
     }
 
   private:
-    using Diagonal  = dealii::DiagonalMatrix<FluidVector>;
-    using Chebyshev = dealii::PreconditionChebyshev<dealii::TrilinosWrappers::SparseMatrix, FluidVector, Diagonal>;
+    /** z_p = -M_p^{-1} r_p, the pressures of `dst`, and B^T z_p in load_. */
+    void
+    solve_pressure(FluidBlockVector &dst, const FluidBlockVector &src) const;
+    void
+    apply_pressure_mass(float *p, float *y) const;
+    ChebyshevArrays<float>
+    arrays() const;
 
-    const StokesOperator                     &stokes_;
-    dealii::TrilinosWrappers::PreconditionAMG multigrid_;
-    Chebyshev                                 pressure_mass_inverse_;
-    mutable FluidVector                       velocity_scratch_;
+    const TaylorHoodSpace               &space_;
+    Multigrid<float>                    &multigrid_;
+    const InstructionSet                 instructions_;
+    std::vector<float>                   inverse_diagonal_; // of the pressure mass matrix
+    ChebyshevRange                       range_;
+    mutable dealii::AlignedVector<float> p_, r_p_, residual_, direction_, load_; // full arrays
   };
 } // namespace tanktread
 

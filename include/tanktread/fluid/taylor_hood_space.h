@@ -10,6 +10,7 @@
 #include <deal.II/lac/affine_constraints.h>
 
 #include <tanktread/fluid/fluid_mesh.h>
+#include <tanktread/fluid/node_space.h>
 #include <tanktread/fluid/types.h>
 
 #include <memory>
@@ -55,19 +56,15 @@ namespace tanktread
    */
   struct TaylorHoodSpace
   {
-    explicit TaylorHoodSpace(const FluidMesh &mesh)
-      : mesh(mesh)
-      , velocity(mesh, 2, true)
-      , pressure(mesh, 1, false)
-    {}
+    /** Collective. @param velocity_nodes those of this mesh, if known already. */
+    explicit TaylorHoodSpace(const FluidMesh &mesh, std::shared_ptr<const NodeSpace> velocity_nodes = nullptr);
 
-    /** Makes `vector` a zero vector of `n_blocks` blocks, three velocity components and (if there are more than three) the pressure; blocks from 4 on stay empty. */
+    /** Makes `vector` a zero vector of `n_blocks` blocks, velocity and (if there are more than one) the pressure; blocks from 2 on stay empty. */
     void
-    reinit(FluidBlockVector &vector, unsigned int n_blocks = 4) const;
+    reinit(FluidBlockVector &vector, unsigned int n_blocks = 2) const;
 
-    const FluidMesh &mesh;
-    ScalarSpace      velocity;
-    ScalarSpace      pressure;
+    const FluidMesh                       &mesh;
+    const std::shared_ptr<const NodeSpace> velocity, pressure;
   };
 } // namespace tanktread
 

@@ -9,14 +9,14 @@
 
 namespace tanktread
 {
-  /** Coefficients of one scalar field, distributed over the ranks. */
+  /** Numbers at the free nodes of one field (see NodeSpace), distributed over the ranks. */
   using FluidVector = dealii::LinearAlgebra::distributed::Vector<double>;
 
-  /** Blocks 0, 1, 2: velocity components (one scalar Q2 field each); block 3: Q1 pressure; the monolithic system appends block 4, see monolithic_system.h. */
+  /** Block 0: velocity, the three components of a node together; block 1: pressure; the monolithic system appends block 2, see monolithic_system.h. */
   using FluidBlockVector = dealii::LinearAlgebra::distributed::BlockVector<double>;
 
-  /** Number of the pressure block, which follows the three velocity components. */
-  constexpr unsigned int pressure_block = 3;
+  constexpr unsigned int velocity_block = 0;
+  constexpr unsigned int pressure_block = 1;
 } // namespace tanktread
 
 #endif

@@ -12,6 +12,13 @@
 
 namespace tanktread
 {
+  /** Which matrix stands for -df/dx. */
+  enum class Tangent
+  {
+    exact,
+    positive // at each quadrature point without the negative eigenvalues of its symmetric part: that of a shell that cannot buckle
+  };
+
   /**
    * A closed elastic shell of vanishing thickness: a membrane whose undeformed state is `reference`, and Helfrich bending about a reference curvature.
    * doc/theory.md, section 2.
@@ -34,20 +41,29 @@ namespace tanktread
 
     // x holds the control points, NP x 3. Where a face is degenerate at a quadrature point (det a <= 0 or not finite) the functions throw NumericalError.
 
+    // With a list of `faces` only these contribute: the sum over lists that hold every face once is what all faces give.
+
     /** Membrane energy and Helfrich energy; the latter is reported in the same way for both forms of the bending work. */
     Energy
     energy(const ControlPoints &x) const;
+    Energy
+    energy(const ControlPoints &x, const std::vector<unsigned int> &faces) const;
 
     /** Nodal forces f_I = -dE/dx_I, NP x 3; with BendingForm::moment_only the bending part is minus the coefficients of its virtual work. */
     ControlPoints
     force(const ControlPoints &x) const;
+    ControlPoints
+    force(const ControlPoints &x, const std::vector<unsigned int> &faces) const;
 
     /**
      * The same forces, and K = -df/dx, 3 NP x 3 NP with the pattern of AssemblyPattern::block_matrix(). K is allocated unless it has that pattern from an earlier
      * call; its values are overwritten. It is symmetric unless bending works in the form moment_only.
      */
     void
-    force_and_tangent(const ControlPoints &x, ControlPoints &f, SparseMatrix &K) const;
+    force_and_tangent(const ControlPoints &x, ControlPoints &f, SparseMatrix &K, Tangent tangent = Tangent::exact) const;
+    void
+    force_and_tangent(const ControlPoints &x, const std::vector<unsigned int> &faces, ControlPoints &f, SparseMatrix &K, Tangent tangent = Tangent::exact)
+      const;
 
     /** Undeformed area that each quadrature point stands for, w_q sqrt(det abar) (length n_points). */
     const Eigen::VectorXd &
@@ -72,6 +88,7 @@ namespace tanktread
     ShellParameters              parameters_;
     ShellModuli                  moduli_;
     unsigned int                 n_rows_; // 2 without bending, 5 with it
+    std::vector<unsigned int>    all_faces_;
     std::vector<ReferenceMetric> reference_metric_;
     Eigen::VectorXd              reference_weights_, reference_curvature_;
   };

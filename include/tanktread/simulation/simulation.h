@@ -52,6 +52,7 @@ namespace tanktread
     FittedShape                  shape_;
     SubdivisionSurface           surface_;
     Shell                        shell_;
+    DistributedShell             distributed_shell_;
     Fluid                        fluid_;
     SubdivisionSurface           coupling_surface_;
     Coupling                     coupling_;

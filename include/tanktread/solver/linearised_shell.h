@@ -4,15 +4,16 @@
 #ifndef tanktread_solver_linearised_shell_h
 #define tanktread_solver_linearised_shell_h
 
-#include <Eigen/SparseLU>
 #include <tanktread/coupling/coupling.h>
-#include <tanktread/shell/shell.h>
+#include <tanktread/solver/distributed_shell.h>
+#include <tanktread/solver/implicit_shell.h>
+#include <tanktread/solver/shell_motion.h>
 #include <tanktread/solver/state.h>
+
+#include <optional>
 
 namespace tanktread
 {
-  using Factorisation = Eigen::SparseLU<Eigen::SparseMatrix<double, Eigen::ColMajor, int>, Eigen::COLAMDOrdering<int>>;
-
   /** Flattened view of nodal fields, index 3 I + c. */
   inline Eigen::Map<const Eigen::VectorXd>
   flat(const ControlPoints &field)
@@ -27,15 +28,21 @@ namespace tanktread
     return Eigen::Map<const ControlPoints>(vector.data(), vector.size() / 3, 3);
   }
 
-  /** Matrix (x) 3 x 3 identity, entries at 3 I + c, 3 J + c. */
-  SparseMatrix
-  for_three_components(const SparseMatrix &matrix);
-
   /** Whether the Newton system knows how interpolation and spreading change with the position of the points; see LinearisedShell. */
   enum class PointDerivatives
   {
     complete,
     frozen
+  };
+
+  /** How a LinearisedShell is to be made. */
+  struct Linearisation
+  {
+    double           tau;      // effective length of the time step
+    double           h;        // finest fluid cell
+    double           accuracy; // relative error that the map dw may have, see ShellMotion
+    PointDerivatives derivatives = PointDerivatives::complete;
+    Tangent          tangent     = Tangent::exact; // positive: without the negative stiffness of a shell under pressure from its sides, and without -pi H_V
   };
 
   /**
@@ -52,7 +59,7 @@ namespace tanktread
    *
    * (mass and Laplace-Beltrami matrices on the current surface) stands for the inverse of the surface mobility J A^{-1} J^T: c0 + c1 k^2 equals the symbol 4 mu k of
    * that inverse for a plane at both ends of the resolved wave numbers. Eliminating the fluid exactly would leave (1 + tau K J A^{-1} J^T) dG, so after
-   * the multiplication the row is close to dG = ... for any stiffness.
+   * the multiplication the row is close to dG = ... for any stiffness. ImplicitShell holds this operator, and it may come from an earlier linearisation.
    *
    * With PointDerivatives::frozen the derivatives of J(x) and R(x) by x are left out, but for the undisturbed flow's: Gamma is that of grad u_inf and D_R = 0. They are the
    * derivatives of piecewise polynomials at the quadrature points, true only while a point stays in its cell; for longer ways the incomplete system is the better model of what
@@ -64,18 +71,19 @@ namespace tanktread
   {
   public:
     /**
-     * @param velocity of the control points, J u + u_inf(x). @param velocity_gradient at the coupling's points, of the flow whose Gamma is meant. @param h finest fluid
-     * cell. Throws NumericalError when one of the two matrices is singular.
+     * @param velocity of the control points, J u + u_inf(x). @param velocity_gradient at the coupling's points, of the flow whose Gamma is meant. @param implicit_shell is renewed unless it serves for tau; kept by
+     * reference, and not to be changed as long as this object is in use.
+     *
+     * Collective. Throws NumericalError when one of the two matrices is singular.
      */
-    LinearisedShell(const Shell              &shell,
+    LinearisedShell(const DistributedShell   &shell,
                     const SubdivisionSurface &surface,
                     const Coupling           &coupling,
                     const State              &state,
                     const ControlPoints      &velocity,
                     const VelocityGradients  &velocity_gradient,
-                    PointDerivatives          derivatives,
-                    double                    tau,
-                    double                    h);
+                    const Linearisation      &choice,
+                    ImplicitShell            &implicit_shell);
 
     /** dx for r_x = 0, r_V = 0 and given velocity moments S^T W Phi du; zero if tau = 0. */
     ControlPoints
@@ -97,13 +105,9 @@ namespace tanktread
     ControlPoints
     stiffness_times(const ControlPoints &dx) const;
 
-    /** Z (Z + tau (K - pi H_V))^{-1} force; the force itself if tau = 0. */
+    /** ImplicitShell::damped(), on the first rank only; the force itself if tau = 0. */
     ControlPoints
     damped(const ControlPoints &force) const;
-
-    /** tau (Z + tau (K - pi H_V))^{-1} force: about how far the shell moves to balance a force that is missing. */
-    ControlPoints
-    displacement_of_force(const ControlPoints &force) const;
 
     /** dF = dG - pi H_V dx. */
     ControlPoints
@@ -137,18 +141,16 @@ namespace tanktread
     void
     correct_volume(ControlPoints &dx, double r_V) const;
 
-    const Coupling &coupling_;
-    double          tau_;
-    ControlPoints   volume_gradient_, density_;
-    ControlPoints   normal_field_;       // m = M^{-1} v
-    ControlPoints   flux_gradient_;      // derivative of that rate by x: Gamma^T m + H_V (J u + u_inf)
-    ControlPoints   volume_response_;    // A^{-1} v
-    SparseMatrix    pressure_stiffness_; // pi H_V
-    SparseMatrix    stiffness_;          // K - pi H_V
-    SparseMatrix    Z_;
-    SparseMatrix    motion_; // A = M - tau Gamma - sigma H_V
-    Factorisation   motion_factors_;
-    Factorisation   implicit_shell_; // of Z + tau (K - pi H_V)
+    const Coupling            &coupling_;
+    const ImplicitShell       &implicit_shell_;
+    double                     tau_, pressure_jump_;
+    ControlPoints              volume_gradient_, density_;
+    ControlPoints              normal_field_;    // m = M^{-1} v
+    ControlPoints              flux_gradient_;   // derivative of that rate by x: Gamma^T m + H_V (J u + u_inf)
+    ControlPoints              volume_response_; // A^{-1} v
+    SparseMatrix               volume_hessian_;  // H_V
+    SparseMatrix               stiffness_;       // K - pi H_V
+    std::optional<ShellMotion> motion_;          // A = M - tau Gamma - sigma H_V; none if tau = 0
   };
 } // namespace tanktread
 

@@ -42,9 +42,11 @@ namespace tanktread
   class MonolithicOperator
   {
   public:
-    MonolithicOperator(const StokesOperator &stokes, const LinearisedShell &shell)
+    /** @param timings where to add what the parts take, or null. */
+    MonolithicOperator(const StokesOperator &stokes, const LinearisedShell &shell, Timings *timings = nullptr)
       : stokes_(stokes)
       , shell_(shell)
+      , timings_(timings)
     {}
 
     void
@@ -53,6 +55,7 @@ namespace tanktread
   private:
     const StokesOperator  &stokes_;
     const LinearisedShell &shell_;
+    Timings *const         timings_;
   };
 
   /**
@@ -62,8 +65,8 @@ namespace tanktread
   class MonolithicPreconditioner
   {
   public:
-    /** `volume`: of the capsule. */
-    MonolithicPreconditioner(const StokesPreconditioner &stokes, const LinearisedShell &shell, double volume);
+    /** @param volume of the capsule. @param timings where to add what the parts take, or null. */
+    MonolithicPreconditioner(const StokesPreconditioner &stokes, const LinearisedShell &shell, double volume, Timings *timings = nullptr);
 
     void
     vmult(FluidBlockVector &dst, const FluidBlockVector &src) const;
@@ -72,6 +75,7 @@ namespace tanktread
     const StokesPreconditioner &stokes_;
     const LinearisedShell      &shell_;
     double                      volume_;
+    Timings *const              timings_;
     mutable FluidBlockVector    loads_;
   };
 } // namespace tanktread

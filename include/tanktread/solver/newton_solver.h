@@ -6,6 +6,7 @@
 
 #include <tanktread/base/timings.h>
 #include <tanktread/fluid/linear_solver.h>
+#include <tanktread/solver/implicit_shell.h>
 #include <tanktread/solver/monolithic_system.h>
 #include <tanktread/solver/solver_parameters.h>
 #include <tanktread/solver/state.h>
@@ -46,7 +47,7 @@ namespace tanktread
    * xhat and tau carry the time scheme: x_n and dt for backward Euler. The pressure jump pi lets no volume through the shell at the new time level; what a finite step
    * along such a velocity still changes of the volume is an error of the time scheme, which the uniform normal displacement sigma m takes away. (To ask
    * the fluid for that volume instead would drive flow through the shell against incompressibility, with a pressure jump that grows like dt/h.) All parts of a residual are measured as velocities of the shell, in a per unit of
-   * time: that of J P^{-1} (r_u, r_p) with the Stokes preconditioner P, |r_x| / tau, |(Z + tau (K - pi H_V))^{-1} r_F|, r_pi / (3 V0) and r_V / (3 V0 tau), the first three as root mean squares over the
+   * time: that of J P^{-1} (r_u, r_p) with the Stokes preconditioner P, |r_x| / tau, |(Z + tau (K - pi H_V))^{-1} r_F| with the operator that ImplicitShell holds, r_pi / (3 V0) and r_V / (3 V0 tau), the first three as root mean squares over the
    * control points. (The Euclidean norm of the load vector r_u would not do: moving the shell within a cell redistributes loads among the
    * nodes, which changes the vector much and the flow little.)
    */
@@ -55,7 +56,7 @@ namespace tanktread
   public:
     /** All arguments are kept by reference. `volume` is V0. */
     NewtonSolver(const SolverParameters   &parameters,
-                 const Shell              &shell,
+                 const DistributedShell   &shell,
                  const SubdivisionSurface &surface,
                  Coupling                 &coupling,
                  double                    volume,
@@ -68,6 +69,11 @@ namespace tanktread
 
     /**
      * Advances `state`, which holds the initial guess, to the solution. If the report says that it did not converge, `state` is as it was. Collective.
+     *
+     * The shell's implicit operator is that of an earlier iteration or time level as long as ImplicitShell says that it serves. It changes between iterations only, at the
+     * linearisation, so that residuals compared in a line search are measured alike. An iteration that fails with an old operator is done again with a new one.
+     *
+     * Where the linear solver fails with the exact tangent, which may be indefinite, the positive one takes its place for the rest of the step, and until the solution of the next is near.
      *
      * Iterations whose displacement |r| tau is longer than a quarter of a cell freeze the points, the others use the complete derivative and converge quadratically.
      */
@@ -85,6 +91,12 @@ namespace tanktread
     ControlPoints
     shell_velocity(const State &state) const;
 
+    const ImplicitShell &
+    implicit_shell() const
+    {
+      return implicit_shell_;
+    }
+
   private:
     Residual
     residual(const State &state, const ControlPoints &xhat, double tau);
@@ -92,34 +104,44 @@ namespace tanktread
     double
     speed(const Residual &r, double tau) const;
     double
-    norm(const Residual &r, const LinearisedShell &shell) const;
+    norm(const Residual &r, double tau) const;
     double
     shell_speed(const FluidBlockVector &load) const;
     bool
     is_solved(const Residual &r, double norm) const;
+    void
+    use(Tangent tangent);
     LinearisedShell
-    linearised(const State &state, PointDerivatives derivatives, double tau);
+    linearised(const State &state, const Linearisation &choice);
     double
     finest_cell() const;
     /** Relative residual at which the linear solver may stop when the norm of the nonlinear residual is `norm`. */
     double
     forcing_term(double norm) const;
+    /** Error that ShellMotion may have in an iteration that starts with the residual `norm`, which may lack the part of the forces. */
+    double
+    motion_accuracy(double norm) const;
     LinearReport
     linear_solve(const Residual &r, const LinearisedShell &shell, double tolerance, State &increment);
     /**
-     * Moves `state` along `increment` with the longest step length of 1, 1/2, ... that reduces the norm of the residual; returns 0 if there is none. All norms are
-     * those of the linearisation that made the increment.
+     * Moves `state` along `increment` with the longest step length of 1, 1/2, ... that reduces the norm of the residual; returns 0 if there is none.
      */
     double
-    line_search(State &state, Residual &r, const LinearisedShell &shell, const State &increment, const ControlPoints &xhat);
+    line_search(State &state, Residual &r, const State &increment, const ControlPoints &xhat, double tau);
+    /** An iteration that starts from `state` and its residual `r`, with its linearisation `shell`. Returns why it failed, or nothing. */
+    std::string
+    iterate(State &state, Residual &r, const LinearisedShell &shell, const ControlPoints &xhat, NewtonReport &report);
 
     const SolverParameters   &parameters_;
-    const Shell              &shell_;
+    const DistributedShell   &shell_;
     const SubdivisionSurface &surface_;
     Coupling                 &coupling_;
     const double              volume_;
     const UndisturbedFlow     flow_;
     Timings                  &timings_;
+    ImplicitShell             implicit_shell_;
+    Tangent                   tangent_ = Tangent::exact; // to start a step with
+    KrylovBasis               krylov_basis_;
     const Fluid              *fluid_ = nullptr;
   };
 } // namespace tanktread

@@ -64,6 +64,13 @@ namespace tanktread
     unsigned int     support_size_;
     std::vector<int> row_starts_, columns_, places_;
   };
+
+  /**
+   * blocks += matrix (x) 3 x 3 identity, for a scalar_matrix() and a block_matrix() of the same pattern. Throws std::logic_error when the numbers of entries do not
+   * fit.
+   */
+  void
+  add_for_three_components(const SparseMatrix &matrix, SparseMatrix &blocks);
 } // namespace tanktread
 
 #endif

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: what solves and time steps cost, mesh by mesh.
+//
+// Usage: mpirun -np N step_cost [--cells 32,64,128] [--dt 0.1]. Markdown tables on the standard output, progress on the standard error. A neo-Hookean sphere with
+// bending (G = 0.2, khat = 0.04) in shear, box 10 a, h = 10 a/cells, shell of level log2(cells/8).
+
+#include <deal.II/base/mpi.h>
+
+#include <tanktread/base/exceptions.h>
+#include <tanktread/base/mpi_errors.h>
+
+#include "capsule_scene.h"
+#include "measurement.h"
+
+#include <cstdlib>
+#include <iostream>
+#include <memory>
+#include <sstream>
+
+using namespace tanktread;
+
+namespace
+{
+  constexpr double       relative_tolerance = 1e-6;
+  constexpr unsigned int max_iterations     = 200;
+
+  struct Options
+  {
+    std::vector<unsigned int> cells = {32, 64, 128};
+    double                    dt    = 0.1;
+  };
+
+
+  /** Iterations and time of a linear solve. */
+  Entry
+  solve(const std::string &name, const LinearReport &report, const double time)
+  {
+    const std::string iterations = (report.converged ? "" : "failed after ") + std::to_string(report.iterations);
+    return {name, iterations + ", " + formatted("%.3g", time), report.converged ? time : 0.};
+  }
+
+
+  /** Mesh, multigrid and the Stokes equations with the forces of the deformed shell. Collective, like all that follows. */
+  void
+  measure_stokes(Scene &scene, Measurement &result)
+  {
+    const double set_up = median_time(1, [&] { scene.refine_around(scene.deformed); });
+    result.n_cells      = scene.fluid.mesh().triangulation().n_global_active_cells();
+    const auto &space   = scene.fluid.space();
+
+    FluidBlockVector load, flow;
+    space.reinit(load);
+    scene.coupling.spread(scene.shell.force(scene.deformed), load);
+    LinearReport report;
+    const double time = median_time(5, [&] {
+      space.reinit(flow);
+      report = solve_fgmres(scene.fluid.stokes(), scene.fluid.preconditioner(), flow, load, relative_tolerance, max_iterations);
+    });
+    result.problem    = {count("cells", result.n_cells),
+                         count("velocity unknowns", space.velocity->partitioner()->size()),
+                         count("pressure unknowns", space.pressure->partitioner()->size()),
+                         count("control points", scene.surface.n_control_points()),
+                         count("coupling points", scene.coupling_surface.n_points()),
+                         seconds("mesh and multigrid", set_up),
+                         solve("Stokes solve, iterations and s", report, time)};
+    // The same solve with assembled matrices and algebraic multigrid (--ml) belongs here: its set-up, ten solves and the ratio of the times.
+  }
+
+
+  /** Right-hand side with all blocks: forces of the shell on the fluid, divergence, flux, and the forces again as missing ones. */
+  FluidBlockVector
+  loads(const Scene &scene, const LinearisedShell &shell, const ControlPoints &force)
+  {
+    FluidBlockVector result = monolithic_vector(scene.fluid.space(), force.rows()), flow(result), product(result);
+    scene.coupling.spread(force, result);
+    scene.fluid.preconditioner().vmult(flow, result);
+    scene.fluid.stokes().vmult(product, flow);
+    result.block(pressure_block) = product.block(pressure_block);
+    set_shell_unknowns(result, {1., shell.damped(force)});
+    return result;
+  }
+
+
+  struct Stiffness
+  {
+    double stretching, bending; // tau E_s/(mu a) and tau kappa_B/(mu a^3)
+  };
+
+
+  /**
+   * A linear solve of Newton's method for the shell x, around which the mesh is, in the undisturbed flow; the loads are those of the deformed shell. Points are frozen, as
+   * the solver does it so far from a solution. Returns the set-up of LinearisedShell (s).
+   */
+  double
+  measure_implicit(const Scene         &scene,
+                   const std::string   &name,
+                   const ControlPoints &x,
+                   const Tangent        tangent,
+                   const Stiffness     &stiffness,
+                   const double         tau,
+                   Entries             &entries)
+  {
+    const Shell            shell(scene.surface, {}, {stiffness.stretching / tau, stiffness.bending / tau}, scene.shape.control_points);
+    const DistributedShell distributed(shell, scene.shape.topology, MPI_COMM_WORLD);
+    ImplicitShell          implicit(MPI_COMM_WORLD);
+    const double           h         = scene.fluid.mesh().cell_size(scene.fluid.mesh().finest_level());
+    VelocityGradients      gradients = VelocityGradients::Zero(scene.coupling.n_local_points(), 9);
+    gradients.col(2).array()         = scene.flow.shear_rate;
+    State state;
+    state.x     = x;
+    state.force = shell.force(x);
+    std::unique_ptr<LinearisedShell> linear;
+    const double                     set_up = median_time(1, [&] {
+      linear = std::make_unique<LinearisedShell>(distributed,
+                                                 scene.surface,
+                                                 scene.coupling,
+                                                 state,
+                                                 scene.flow.velocity(x),
+                                                 gradients,
+                                                 Linearisation{tau, h, 1e-8, PointDerivatives::frozen, tangent},
+                                                 implicit);
+    });
+    const MonolithicOperator         matrix(scene.fluid.stokes(), *linear);
+    const MonolithicPreconditioner   preconditioner(scene.fluid.preconditioner(), *linear, scene.volume);
+    const FluidBlockVector           rhs = loads(scene, *linear, shell.force(scene.deformed));
+    LinearReport                     report;
+    const auto                       solve_once = [&] {
+      FluidBlockVector solution = monolithic_vector(scene.fluid.space(), x.rows());
+      report                    = solve_fgmres(matrix, preconditioner, solution, rhs, relative_tolerance, max_iterations);
+    };
+    double time = median_time(1, solve_once);
+    if (report.converged)
+      time = median_time(3, solve_once);
+    entries.push_back(solve(name + formatted(" (%g, ", stiffness.stretching) + formatted("%g)", stiffness.bending), report, time));
+    return set_up;
+  }
+
+
+  Entries
+  measure_implicit_solves(const Scene &scene, const std::string &name, const ControlPoints &x, const Tangent tangent, const double tau)
+  {
+    const Stiffness stiffnesses[] = {{1., 0.}, {10., 0.}, {0., 0.1}, {0., 10.}, {10., 1.}, {10., 10.}};
+    double          set_up        = 0.;
+    Entries         result(1);
+    for (const Stiffness &stiffness : stiffnesses)
+      set_up += measure_implicit(scene, name, x, tangent, stiffness, tau, result);
+    result[0] = seconds(name + " LinearisedShell", set_up / std::size(stiffnesses));
+    return result;
+  }
+
+
+  /** Shares of the time that the steps have taken. */
+  Entries
+  shares(const Timings &timings, const double total)
+  {
+    const auto        share = [&](const std::string &name, const double time) { return Entry{name, formatted("%.1f%%", 100. * time / total), 0.}; };
+    Entries           result;
+    double            sum    = 0.;
+    const std::string solver = "Linear solver";
+    for (const char *name : {"- Stokes operator", "- V-cycle", "- pressure mass and gradient", "- coupling", "- shell"})
+      result.push_back(share(std::string(name).substr(2), timings.seconds(name)));
+    result.push_back(share("orthogonalisation", timings.rest(solver)));
+    for (const char *name : {"Shell tangent and factorisation", "Residual"})
+      {
+        result.push_back(share(name, timings.seconds(name)));
+        sum += timings.seconds(name);
+      }
+    result.push_back(share("other", total - sum - timings.seconds(solver)));
+    return result;
+  }
+
+
+  void
+  measure_steps(Scene &scene, const double dt, Measurement &result)
+  {
+    constexpr unsigned int n_warm_up = 3, n_measured = 5;
+    Stepping               stepping(scene, dt);
+    Timings                timings; // of the measured steps
+    std::vector<double>    times;
+    double                 newton = 0., linear = 0., total = 0.;
+    for (unsigned int n = 0; times.size() < n_measured; ++n)
+      {
+        stepping.refine_if_necessary();
+        const bool is_measured = n >= n_warm_up && stepping.has_previous();
+        scene.timings          = timings;
+        NewtonReport report;
+        const double time = median_time(1, [&] { report = stepping.step(); });
+        if (!is_measured)
+          continue;
+        timings = scene.timings;
+        times.push_back(time);
+        total += time;
+        newton += report.newton_iterations;
+        linear += report.linear_iterations;
+      }
+    std::sort(times.begin(), times.end());
+    result.steps = {{"Newton iterations", formatted("%.1f", newton / n_measured), 0.},
+                    {"linear iterations", formatted("%.1f", linear / n_measured), 0.},
+                    seconds("step", times[n_measured / 2])};
+    for (const Entry &share : shares(timings, total))
+      result.steps.push_back(share);
+  }
+
+
+  Measurement
+  measure(const unsigned int cells, const double dt)
+  {
+    Measurement result;
+    result.mesh         = "10a/" + std::to_string(cells);
+    const auto progress = [&](const Entries &entries) {
+      if (is_first_rank())
+        std::cerr << line(result.mesh, entries, &Entry::name) << line(result.mesh, entries, &Entry::text) << std::flush;
+    };
+    forget_peak_memory();
+    Scene scene(cells);
+    measure_stokes(scene, result);
+    progress(result.problem);
+    result.solves = measure_implicit_solves(scene, "deformed", scene.deformed, Tangent::positive, dt);
+    progress(result.solves);
+    scene.refine_around(scene.shape.control_points);
+    result.solves_at_sphere = measure_implicit_solves(scene, "sphere", scene.shape.control_points, Tangent::exact, dt);
+    progress(result.solves_at_sphere);
+    measure_steps(scene, dt, result);
+    const double memory = peak_memory();
+    result.steps.push_back({"peak memory, GB", formatted("%.2f", memory), memory});
+    progress(result.steps);
+    return result;
+  }
+
+
+  /** Numbers of at least 8 between commas; none if the text is something else. */
+  std::vector<unsigned int>
+  read_cells(const std::string &text)
+  {
+    std::vector<unsigned int> result;
+    std::istringstream        stream(text);
+    for (unsigned int number; stream >> number && number >= 8; stream.get())
+      {
+        result.push_back(number);
+        if (stream.peek() != ',')
+          return stream.eof() ? result : std::vector<unsigned int>();
+      }
+    return {};
+  }
+
+
+  Options
+  parse(const std::vector<std::string> &words)
+  {
+    Options options;
+    for (std::size_t i = 0; i < words.size(); i += 2)
+      {
+        const std::string value = i + 1 < words.size() ? words[i + 1] : "";
+        if (words[i] == "--cells")
+          options.cells = read_cells(value);
+        else if (words[i] == "--dt")
+          options.dt = std::atof(value.c_str());
+        else
+          options.cells.clear();
+        if (options.cells.empty() || !(options.dt > 0.))
+          throw InputError("step_cost: got '" + words[i] + " " + value + "'; allowed: --cells 32,64,128 (at least 8 each) and --dt 0.1");
+      }
+    return options;
+  }
+
+
+  void
+  work(const std::vector<std::string> &words)
+  {
+    const Options            options = parse(words);
+    std::vector<Measurement> all;
+    for (const unsigned int cells : options.cells)
+      all.push_back(measure(cells, options.dt));
+    if (!is_first_rank())
+      return;
+    const std::string dt = formatted("%g", options.dt);
+    std::cout
+      << "Ranks: " << dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) << "; relative tolerance of the linear solves: " << relative_tolerance << ".\n\n"
+      << table("The mesh, and a Stokes solve from zero with the forces of a deformed shell:", all, &Measurement::problem)
+      << table("Implicit solves at the sphere with (dt E_s/(mu a), dt kappa_B/(mu a^3)), dt = " + dt + ", iterations and s:",
+               all,
+               &Measurement::solves_at_sphere)
+      << table(
+           "The same at the deformed shell, compressed in two directions, with the positive tangent, to which Newton's method resorts where the exact one is indefinite:",
+           all,
+           &Measurement::solves)
+      << table("Steps of backward Euler, dt = " + dt + ", and the shares of their time; the first five within the linear solver:", all, &Measurement::steps);
+    if (all.size() > 1)
+      std::cout << table_of_exponents(all);
+  }
+} // namespace
+
+
+int
+main(int argc, char *argv[])
+{
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  argc = 1; // PETSc would take our options for its own.
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  return exit_code_of(MPI_COMM_WORLD, [&words] { work(words); });
+}

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: four numbers in vector registers.
+
+#ifndef tanktread_base_vector4_h
+#define tanktread_base_vector4_h
+
+namespace tanktread
+{
+  /**
+   * A 3-vector and a fourth number in two registers of two, which every 64-bit processor has. Compilers leave arrays of four numbers that are summed up in loops in
+   * memory; these stay in registers.
+   */
+  class Vector4
+  {
+  public:
+    Vector4()
+      : Vector4(0., 0., 0.)
+    {}
+    Vector4(const double x, const double y, const double z, const double w = 0.)
+      : xy_{x, y}
+      , zw_{z, w}
+    {}
+    /** The three numbers at `values` and a zero. */
+    explicit Vector4(const double *values)
+      : Vector4(values[0], values[1], values[2])
+    {}
+
+    /** Writes the first three. */
+    void
+    store(double *values) const
+    {
+      values[0] = xy_[0];
+      values[1] = xy_[1];
+      values[2] = zw_[0];
+    }
+    double
+    operator[](const unsigned int c) const
+    {
+      return c < 2 ? xy_[c] : zw_[c - 2];
+    }
+
+    Vector4 &
+    operator+=(const Vector4 &v)
+    {
+      xy_ += v.xy_;
+      zw_ += v.zw_;
+      return *this;
+    }
+    Vector4 &
+    operator-=(const Vector4 &v)
+    {
+      xy_ -= v.xy_;
+      zw_ -= v.zw_;
+      return *this;
+    }
+    Vector4 &
+    operator*=(const double factor)
+    {
+      xy_ *= factor;
+      zw_ *= factor;
+      return *this;
+    }
+    friend Vector4
+    operator+(Vector4 v, const Vector4 &w)
+    {
+      return v += w;
+    }
+    friend Vector4
+    operator*(const double factor, Vector4 v)
+    {
+      return v *= factor;
+    }
+
+  private:
+    typedef double Pair __attribute__((vector_size(16)));
+
+    Pair xy_, zw_;
+  };
+} // namespace tanktread
+
+#endif

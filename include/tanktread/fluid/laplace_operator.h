@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: the vector Laplace operator on one rung.
+
+#ifndef tanktread_fluid_laplace_operator_h
+#define tanktread_fluid_laplace_operator_h
+
+#include <tanktread/fluid/cube_kernel.h>
+#include <tanktread/fluid/node_space.h>
+
+namespace tanktread
+{
+  /** (grad u, grad v) for each velocity component on the free nodes, on full arrays (see NodeSpace). `space` is kept by reference. */
+  template <typename Number>
+  class LaplaceOperator
+  {
+  public:
+    explicit LaplaceOperator(const NodeSpace &space);
+
+    /** y = A u for owned nodes; updates the rest of u, and what y has beyond its owned nodes is void. Collective. */
+    void
+    apply(Number *u, Number *y) const;
+
+    /** Diagonal of A, one number an owned node, hanging nodes included exactly. */
+    std::vector<Number>
+    diagonal() const;
+
+    const NodeSpace &
+    space() const
+    {
+      return space_;
+    }
+
+  private:
+    const NodeSpace     &space_;
+    const InstructionSet instructions_;
+  };
+} // namespace tanktread
+
+#endif

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: one V-cycle for the velocities.
+
+#ifndef tanktread_fluid_multigrid_h
+#define tanktread_fluid_multigrid_h
+
+#include <tanktread/fluid/chebyshev.h>
+#include <tanktread/fluid/coarse_solver.h>
+#include <tanktread/fluid/laplace_operator.h>
+#include <tanktread/fluid/level_transfer.h>
+
+#include <memory>
+
+namespace tanktread
+{
+  /**
+   * Climbs with a mesh to its last rung and keeps what the V-cycle needs of each rung: global coarsening, so that every rung is a complete mesh with its own hanging nodes and its own
+   * periodicity. Smoothing by Chebyshev polynomials in D^{-1} A, D the diagonal; a direct solver on the first rung. Number: float is enough for a preconditioner.
+   */
+  template <typename Number>
+  class Multigrid
+  {
+  public:
+    struct Options
+    {
+      unsigned int degree = 2;  // of the polynomial, before and after the coarse correction
+      double       range  = 5.; // it reduces errors with eigenvalues between largest / range and largest
+    };
+
+    explicit Multigrid(const Options &options = {});
+
+    /** `mesh` is on its first rung. */
+    void
+    start(const FluidMesh &mesh);
+
+    /** Lets the mesh climb one rung and keeps the way between. Collective. */
+    void
+    climb(FluidMesh &mesh);
+
+    /** Array for the right-hand side on the last rung: owned entries of a full array. */
+    Number *
+    right_hand_side()
+    {
+      return levels_.back().b.data();
+    }
+    /** Result of the V-cycle, likewise. */
+    const Number *
+    solution() const
+    {
+      return levels_.back().x.data();
+    }
+
+    /** solution() = approximately A^{-1} right_hand_side(), a fixed linear map, symmetric and positive. Collective. */
+    void
+    v_cycle();
+
+    /** Nodes on the last rung. */
+    const std::shared_ptr<const NodeSpace> &
+    space() const
+    {
+      return levels_.back().space;
+    }
+    unsigned int
+    n_levels() const
+    {
+      return levels_.size();
+    }
+    /** Estimated largest eigenvalue of D^{-1} A on the last rung. */
+    double
+    largest_eigenvalue() const
+    {
+      return levels_.back().largest_eigenvalue;
+    }
+
+  private:
+    struct Level
+    {
+      std::shared_ptr<const NodeSpace>         space;
+      std::unique_ptr<LaplaceOperator<Number>> laplace;
+      std::unique_ptr<LevelTransfer<Number>>   transfer; // from the level before
+      std::vector<Number>                      inverse_diagonal;
+      double                                   largest_eigenvalue = 0.;
+      dealii::AlignedVector<Number>            x, b, residual, direction; // full arrays
+    };
+
+    void
+    finish_level();
+    static ChebyshevArrays<Number>
+    arrays(Level &level);
+    void
+    smooth(Level &level, bool from_zero) const;
+    void
+    cycle(unsigned int l);
+
+    Options                               options_;
+    std::vector<Level>                    levels_;
+    std::unique_ptr<CoarseSolver<Number>> coarse_solver_;
+  };
+} // namespace tanktread
+
+#endif

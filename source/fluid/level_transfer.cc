@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: interpolation of velocities from one rung of the mesh to the next, and its transpose.
+
+#include <tanktread/base/exceptions.h>
+#include <tanktread/fluid/level_transfer.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <limits>
+
+namespace tanktread
+{
+  using Index = dealii::types::global_dof_index;
+
+  namespace
+  {
+    constexpr unsigned int stride = 4; // numbers a velocity node, see NodeSpace
+
+    struct Entry
+    {
+      double weight;
+      Index  node;
+    };
+    using Row = std::vector<Entry>;
+
+    /** What the 27 nodes of a coarse cell follow from. */
+    using CellRows = std::array<Row, 27>;
+
+
+    std::vector<char>
+    pack(const NodeSpace &space, const unsigned int cell)
+    {
+      std::vector<Entry> entries;
+      std::vector<char>  result(27);
+      for (unsigned int a = 0; a < 27; ++a)
+        {
+          const std::size_t  before = entries.size();
+          const unsigned int node   = space.cell_nodes(cell)[a];
+          if (space.is_free(node))
+            entries.push_back({1., space.global_node(node)});
+          else
+            for (const auto &[master, weight] : space.masters(node))
+              entries.push_back({weight, space.global_node(master)});
+          result[a] = static_cast<char>(entries.size() - before);
+        }
+      result.resize(27 + entries.size() * sizeof(Entry));
+      std::memcpy(result.data() + 27, entries.data(), entries.size() * sizeof(Entry));
+      return result;
+    }
+
+
+    template <typename Bytes>
+    void
+    unpack(const Bytes &bytes, CellRows &rows)
+    {
+      const char *const data = &*bytes.begin();
+      const char       *next = data + 27;
+      for (unsigned int a = 0; a < 27; ++a)
+        {
+          rows[a].resize(static_cast<unsigned char>(data[a]));
+          std::memcpy(rows[a].data(), next, rows[a].size() * sizeof(Entry));
+          next += rows[a].size() * sizeof(Entry);
+        }
+    }
+
+
+    /** Row of the node at position (i, j, k) of 5 x 5 x 5 in a coarse cell; the result is in `row`, its entries for the same node added up. */
+    void
+    interpolate(const CellRows &rows, const std::array<unsigned int, 3> &position, Row &row)
+    {
+      constexpr double weights[5][3] = {{1, 0, 0}, {0.375, 0.75, -0.125}, {0, 1, 0}, {-0.125, 0.75, 0.375}, {0, 0, 1}};
+      row.clear();
+      for (unsigned int a = 0; a < 27; ++a)
+        {
+          const double w = weights[position[0]][a % 3] * weights[position[1]][a / 3 % 3] * weights[position[2]][a / 9];
+          if (w != 0.)
+            for (const Entry &entry : rows[a])
+              row.push_back({w * entry.weight, entry.node});
+        }
+      std::sort(row.begin(), row.end(), [](const Entry &x, const Entry &y) { return x.node < y.node; });
+      std::size_t n = 0;
+      for (const Entry &entry : row)
+        if (n > 0 && row[n - 1].node == entry.node)
+          row[n - 1].weight += entry.weight;
+        else
+          row[n++] = entry;
+      row.resize(n);
+    }
+
+
+    /** Takes rows in any order, one for each owned node. */
+    class RowCollector
+    {
+    public:
+      explicit RowCollector(const unsigned int n_owned)
+        : place_(n_owned, {nothing, 0})
+      {}
+
+      bool
+      wants(const unsigned int node) const
+      {
+        return node < place_.size() && place_[node].first == nothing;
+      }
+
+      void
+      add(const unsigned int node, const Row &row)
+      {
+        place_[node] = {entries_.size(), row.size()};
+        entries_.insert(entries_.end(), row.begin(), row.end());
+      }
+
+      InterpolationRows
+      sorted() const
+      {
+        InterpolationRows result;
+        result.start.reserve(place_.size() + 1);
+        result.node.reserve(entries_.size());
+        result.weight.reserve(entries_.size());
+        result.start.push_back(0);
+        for (const auto &[begin, length] : place_)
+          {
+            if (begin == nothing)
+              throw NumericalError("A node of the fluid mesh has no value from the next coarser mesh.");
+            for (std::size_t e = begin; e < begin + length; ++e)
+              {
+                result.node.push_back(entries_[e].node);
+                result.weight.push_back(entries_[e].weight);
+              }
+            result.start.push_back(result.node.size());
+          }
+        return result;
+      }
+
+    private:
+      static constexpr std::size_t                      nothing = std::numeric_limits<std::size_t>::max();
+      std::vector<std::pair<std::size_t, unsigned int>> place_;
+      std::vector<Entry>                                entries_;
+    };
+
+
+    /** Position of each locally owned active cell among them, at its active cell index. */
+    std::vector<unsigned int>
+    owned_cell_numbers(const FluidMesh::Triangulation &triangulation)
+    {
+      std::vector<unsigned int> result(triangulation.n_active_cells());
+      unsigned int              n = 0;
+      for (const auto &cell : triangulation.active_cell_iterators())
+        if (cell->is_locally_owned())
+          result[cell->active_cell_index()] = n++;
+      return result;
+    }
+  } // namespace
+
+
+  InterpolationRows
+  climb_with_interpolation(FluidMesh &mesh, const NodeSpace &coarse, const std::function<const NodeSpace &()> &number_fine_nodes)
+  {
+    FluidMesh::Triangulation       &triangulation = mesh.triangulation();
+    const std::vector<unsigned int> coarse_number = owned_cell_numbers(triangulation);
+    // The cells that are packed are those of the mesh before.
+    const unsigned int handle =
+      triangulation.register_data_attach([&](const auto &cell, const auto) { return pack(coarse, coarse_number[cell->active_cell_index()]); }, true);
+    mesh.climb();
+
+    const NodeSpace                &fine        = number_fine_nodes();
+    const std::vector<unsigned int> fine_number = owned_cell_numbers(triangulation);
+    RowCollector                    collector(fine.n_owned());
+    CellRows                        rows;
+    Row                             row;
+    triangulation.notify_ready_to_unpack(handle, [&](const auto &cell, const auto, const auto &bytes) {
+      unpack(bytes, rows);
+      if (!cell->has_children())
+        {
+          const unsigned int *nodes = fine.cell_nodes(fine_number[cell->active_cell_index()]);
+          for (unsigned int a = 0; a < 27; ++a)
+            if (collector.wants(nodes[a]))
+              collector.add(nodes[a], rows[a]);
+          return;
+        }
+      for (unsigned int child = 0; child < 8; ++child)
+        {
+          const unsigned int *nodes = fine.cell_nodes(fine_number[cell->child(child)->active_cell_index()]);
+          for (unsigned int a = 0; a < 27; ++a)
+            if (collector.wants(nodes[a]))
+              {
+                interpolate(rows, {{2 * (child % 2) + a % 3, 2 * (child / 2 % 2) + a / 3 % 3, 2 * (child / 4) + a / 9}}, row);
+                collector.add(nodes[a], row);
+              }
+        }
+    });
+    return collector.sorted();
+  }
+
+
+  template <typename Number>
+  LevelTransfer<Number>::LevelTransfer(const InterpolationRows &rows, const NodeSpace &coarse, const NodeSpace &fine)
+    : n_coarse_(coarse.n_owned())
+    , n_fine_(fine.n_owned())
+    , start_(rows.start.begin(), rows.start.end())
+    , weight_(rows.weight.begin(), rows.weight.end())
+  {
+    const Index        first = coarse.first_owned(), n_global = coarse.partitioner()->size() / coarse.n_components();
+    std::vector<Index> ghosts;
+    for (const Index node : rows.node)
+      if (node < first || node >= first + n_coarse_)
+        ghosts.push_back(node);
+    std::sort(ghosts.begin(), ghosts.end());
+    ghosts.erase(std::unique(ghosts.begin(), ghosts.end()), ghosts.end());
+
+    node_.reserve(rows.node.size());
+    for (const Index node : rows.node)
+      node_.push_back(node >= first && node < first + n_coarse_ ? node - first
+                                                                : n_coarse_ + (std::lower_bound(ghosts.begin(), ghosts.end(), node) - ghosts.begin()));
+
+    dealii::IndexSet owned(stride * n_global), ghost_set(stride * n_global);
+    owned.add_range(stride * first, stride * (first + n_coarse_));
+    for (const Index node : ghosts)
+      ghost_set.add_range(stride * node, stride * (node + 1));
+    partitioner_ = std::make_shared<dealii::Utilities::MPI::Partitioner>(owned, ghost_set, coarse.partitioner()->get_mpi_communicator());
+    values_.resize(stride * (n_coarse_ + ghosts.size()));
+    buffer_.resize(partitioner_->n_import_indices());
+  }
+
+
+  template <typename Number>
+  void
+  LevelTransfer<Number>::prolongate(const Number *const coarse, Number *const fine) const
+  {
+    const Number *values = coarse;
+    if (partitioner_->n_mpi_processes() > 1)
+      {
+        const dealii::ArrayView<const Number> owned(coarse, stride * n_coarse_);
+        const dealii::ArrayView<Number> ghosts(values_.data() + stride * n_coarse_, partitioner_->n_ghost_indices()), buffer(buffer_.data(), buffer_.size());
+        std::vector<MPI_Request>        requests;
+        partitioner_->template export_to_ghosted_array_start<Number, dealii::MemorySpace::Host>(0, owned, buffer, ghosts, requests);
+        std::copy(coarse, coarse + stride * n_coarse_, values_.data());
+        partitioner_->template export_to_ghosted_array_finish<Number, dealii::MemorySpace::Host>(ghosts, requests);
+        values = values_.data();
+      }
+    const unsigned int *const start = start_.data(), *const node = node_.data();
+    const Number *const weight = weight_.data();
+    for (std::size_t i = 0; i < n_fine_; ++i)
+      {
+        Number sum[stride] = {};
+        for (unsigned int e = start[i]; e < start[i + 1]; ++e)
+          {
+            const Number *const value = values + std::size_t(stride) * node[e];
+            for (unsigned int c = 0; c < stride; ++c)
+              sum[c] += weight[e] * value[c];
+          }
+        for (unsigned int c = 0; c < stride; ++c)
+          fine[stride * i + c] += sum[c];
+      }
+  }
+
+
+  template <typename Number>
+  void LevelTransfer<Number>::restrict(const Number *const fine, Number *const coarse) const
+  {
+    std::fill(values_.begin(), values_.end(), Number(0));
+    const unsigned int *const start = start_.data(), *const node = node_.data();
+    const Number *const weight = weight_.data();
+    Number *const       values = values_.data();
+    for (std::size_t i = 0; i < n_fine_; ++i)
+      {
+        Number given[stride];
+        for (unsigned int c = 0; c < stride; ++c)
+          given[c] = fine[stride * i + c];
+        for (unsigned int e = start[i]; e < start[i + 1]; ++e)
+          {
+            const Number  w     = weight[e];
+            Number *const value = values + std::size_t(stride) * node[e];
+            for (unsigned int c = 0; c < stride; ++c)
+              value[c] += w * given[c];
+          }
+      }
+    if (partitioner_->n_mpi_processes() > 1)
+      {
+        const dealii::ArrayView<Number> owned(values_.data(), stride * n_coarse_);
+        const dealii::ArrayView<Number> ghosts(values_.data() + stride * n_coarse_, partitioner_->n_ghost_indices()), buffer(buffer_.data(), buffer_.size());
+        const dealii::ArrayView<const Number> received(buffer_.data(), buffer_.size());
+        std::vector<MPI_Request>              requests;
+        partitioner_->template import_from_ghosted_array_start<Number, dealii::MemorySpace::Host>(dealii::VectorOperation::add, 0, ghosts, buffer, requests);
+        partitioner_->template import_from_ghosted_array_finish<Number, dealii::MemorySpace::Host>(dealii::VectorOperation::add,
+                                                                                                   received,
+                                                                                                   owned,
+                                                                                                   ghosts,
+                                                                                                   requests);
+      }
+    std::copy(values_.begin(), values_.begin() + stride * n_coarse_, coarse);
+  }
+
+
+  template class LevelTransfer<float>;
+  template class LevelTransfer<double>;
+} // namespace tanktread

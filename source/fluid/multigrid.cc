@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: one V-cycle for the velocities.
+
+#include <deal.II/base/mpi.h>
+
+#include <tanktread/fluid/multigrid.h>
+#include <tanktread/fluid/taylor_hood_space.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tanktread
+{
+  template <typename Number>
+  Multigrid<Number>::Multigrid(const Options &options)
+    : options_(options)
+  {}
+
+
+  template <typename Number>
+  void
+  Multigrid<Number>::start(const FluidMesh &mesh)
+  {
+    levels_.clear();
+    levels_.emplace_back();
+    levels_.back().space = std::make_shared<NodeSpace>(ScalarSpace(mesh, 2, true), 3);
+    coarse_solver_       = std::make_unique<CoarseSolver<Number>>(mesh, *levels_.back().space);
+    finish_level();
+  }
+
+
+  template <typename Number>
+  void
+  Multigrid<Number>::climb(FluidMesh &mesh)
+  {
+    const std::shared_ptr<const NodeSpace> coarse = levels_.back().space;
+    levels_.emplace_back();
+    Level                  &level = levels_.back();
+    const InterpolationRows rows  = climb_with_interpolation(mesh, *coarse, [&]() -> const NodeSpace  &{
+      level.space = std::make_shared<NodeSpace>(ScalarSpace(mesh, 2, true), 3);
+      return *level.space;
+    });
+    level.transfer                = std::make_unique<LevelTransfer<Number>>(rows, *coarse, *level.space);
+    finish_level();
+  }
+
+
+  template <typename Number>
+  ChebyshevArrays<Number>
+  Multigrid<Number>::arrays(Level &level)
+  {
+    return {level.inverse_diagonal, level.x, level.b, level.residual, level.direction};
+  }
+
+
+  template <typename Number>
+  void
+  Multigrid<Number>::finish_level()
+  {
+    Level &level  = levels_.back();
+    level.laplace = std::make_unique<LaplaceOperator<Number>>(*level.space);
+    for (auto *array : {&level.x, &level.b, &level.residual, &level.direction})
+      array->resize(level.space->full_size(), Number(0));
+    if (levels_.size() == 1)
+      return; // solved directly
+    level.inverse_diagonal = level.laplace->diagonal();
+    for (Number &d : level.inverse_diagonal)
+      d = Number(1) / d;
+    const auto apply         = [&](Number *x, Number *y) { level.laplace->apply(x, y); };
+    level.largest_eigenvalue = tanktread::largest_eigenvalue<4>(apply, *level.space, arrays(level));
+  }
+
+
+  template <typename Number>
+  void
+  Multigrid<Number>::cycle(const unsigned int l)
+  {
+    Level &level = levels_[l];
+    if (l == 0)
+      return coarse_solver_->solve(level.b.data(), level.x.data());
+    const ChebyshevRange range{options_.degree, level.largest_eigenvalue / options_.range, level.largest_eigenvalue};
+    const auto           apply = [&](Number *x, Number *y) { level.laplace->apply(x, y); };
+    chebyshev<4>(apply, range, arrays(level), true);
+    level.laplace->apply(level.x.data(), level.residual.data());
+    for (std::size_t j = 0; j < 4 * std::size_t(level.space->n_owned()); ++j)
+      level.residual[j] = level.b[j] - level.residual[j];
+    level.transfer->restrict(level.residual.data(), levels_[l - 1].b.data());
+    cycle(l - 1);
+    level.transfer->prolongate(levels_[l - 1].x.data(), level.x.data());
+    chebyshev<4>(apply, range, arrays(level), false);
+  }
+
+
+  template <typename Number>
+  void
+  Multigrid<Number>::v_cycle()
+  {
+    cycle(levels_.size() - 1);
+  }
+
+
+  template class Multigrid<float>;
+  template class Multigrid<double>;
+} // namespace tanktread

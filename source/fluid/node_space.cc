@@ -1,0 +1,402 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: numbering of the free nodes of a continuous field, and what the other nodes follow from.
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/fe/fe_tools.h>
+
+#include <tanktread/fluid/node_space.h>
+#include <tanktread/fluid/taylor_hood_space.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <unordered_map>
+
+namespace tanktread
+{
+  using Index = dealii::types::global_dof_index;
+
+  namespace
+  {
+    constexpr unsigned int unknown = std::numeric_limits<unsigned int>::max();
+
+    /** Degrees of freedom of all locally owned cells, one cell after the other, each in lexicographic order. */
+    std::vector<Index>
+    lexicographic_dofs(const dealii::DoFHandler<3> &dofs)
+    {
+      const auto        &fe    = dofs.get_fe();
+      const auto         order = dealii::FETools::lexicographic_to_hierarchic_numbering<3>(fe.degree);
+      std::vector<Index> cell_dofs(fe.n_dofs_per_cell()), result;
+      for (const auto &cell : dofs.active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            cell->get_dof_indices(cell_dofs);
+            for (const unsigned int i : order)
+              result.push_back(cell_dofs[i]);
+          }
+      return result;
+    }
+
+
+    dealii::IndexSet
+    with_components(const dealii::IndexSet &nodes, const unsigned int n_components)
+    {
+      dealii::IndexSet result(nodes.size() * n_components);
+      for (auto interval = nodes.begin_intervals(); interval != nodes.end_intervals(); ++interval)
+        result.add_range(*interval->begin() * n_components, (interval->last() + 1) * n_components);
+      result.compress();
+      return result;
+    }
+
+
+    /** Collects places in full arrays while the cells are walked through. */
+    class Numbering
+    {
+    public:
+      Numbering(const ScalarSpace &space, const std::vector<Index> &cell_dofs)
+        : constraints_(space.constraints())
+        , owned_dofs_(space.partitioner()->locally_owned_range())
+        , number_(space.partitioner())
+        , place_(space.partitioner()->locally_owned_size() + space.partitioner()->n_ghost_indices(), unknown)
+      {
+        number_owned(cell_dofs, space.partitioner()->get_mpi_communicator());
+        find_ghosts(cell_dofs);
+      }
+
+      Index first_owned = 0, n_global = 0;
+
+      std::vector<Index>             ghosts; // global numbers, sorted
+      std::vector<unsigned int>      row_start{0};
+      std::vector<NodeSpace::Master> masters;
+      unsigned int                   n_owned = 0;
+
+      /** Place of a degree of freedom, which gets a row of masters if it needs one; `unknown` for a wall node. */
+      unsigned int
+      place(const Index dof)
+      {
+        if (!constraints_.is_constrained(dof))
+          return free_place(dof);
+        const auto &entries = *constraints_.get_constraint_entries(dof);
+        if (entries.empty())
+          return unknown;
+        if (entries.size() == 1 && entries.front().second == 1.)
+          return free_place(entries.front().first);
+        unsigned int &result = place_[number_.get_partitioner()->global_to_local(dof)];
+        if (result == unknown)
+          {
+            result = n_owned + ghosts.size() + row_start.size() - 1;
+            for (const auto &[master, weight] : entries)
+              masters.push_back({free_place(master), static_cast<float>(weight)});
+            row_start.push_back(masters.size());
+          }
+        return result;
+      }
+
+    private:
+      /** Calls f(dof) for every free degree of freedom that the cells refer to, in the order in which they do. */
+      template <typename Function>
+      void
+      for_free_dofs(const std::vector<Index> &cell_dofs, const Function &f) const
+      {
+        for (const Index dof : cell_dofs)
+          if (!constraints_.is_constrained(dof))
+            f(dof);
+          else
+            for (const auto &entry : *constraints_.get_constraint_entries(dof))
+              f(entry.first);
+      }
+
+      void
+      number_owned(const std::vector<Index> &cell_dofs, const MPI_Comm communicator)
+      {
+        number_ = -1.; // global numbers, exact as doubles
+        // In its own cells every owned degree of freedom occurs; those seen through constraints only may belong to others.
+        for (const Index dof : cell_dofs)
+          if (!constraints_.is_constrained(dof) && owned_dofs_.is_element(dof))
+            {
+              unsigned int &p = place_[number_.get_partitioner()->global_to_local(dof)];
+              if (p == unknown)
+                p = n_owned++;
+            }
+        const Index n = n_owned;
+        n_global      = dealii::Utilities::MPI::sum(n, communicator);
+        MPI_Exscan(&n, &first_owned, 1, DEAL_II_DOF_INDEX_MPI_TYPE, MPI_SUM, communicator);
+        for (unsigned int i = 0; i < number_.locally_owned_size(); ++i)
+          if (place_[i] != unknown)
+            number_.local_element(i) = first_owned + place_[i];
+        number_.update_ghost_values();
+      }
+
+      void
+      find_ghosts(const std::vector<Index> &cell_dofs)
+      {
+        for_free_dofs(cell_dofs, [&](const Index dof) {
+          if (!owned_dofs_.is_element(dof))
+            ghosts.push_back(number_(dof));
+        });
+        std::sort(ghosts.begin(), ghosts.end());
+        ghosts.erase(std::unique(ghosts.begin(), ghosts.end()), ghosts.end());
+      }
+
+      unsigned int
+      free_place(const Index dof)
+      {
+        unsigned int &p = place_[number_.get_partitioner()->global_to_local(dof)];
+        if (p == unknown)
+          p = n_owned + (std::lower_bound(ghosts.begin(), ghosts.end(), Index(number_(dof))) - ghosts.begin());
+        return p;
+      }
+
+      const dealii::AffineConstraints<double> &constraints_;
+      const dealii::IndexSet                  &owned_dofs_;
+      FluidVector                              number_;
+      std::vector<unsigned int>                place_; // of local degrees of freedom
+    };
+  } // namespace
+
+
+  NodeSpace::NodeSpace(const ScalarSpace &space, const unsigned int n_components)
+    : n_components_(n_components)
+    , nodes_per_cell_(space.dofs().get_fe().n_dofs_per_cell())
+  {
+    const std::vector<Index> cell_dofs = lexicographic_dofs(space.dofs());
+    Numbering                numbering(space, cell_dofs);
+    for (const auto &cell : space.dofs().active_cell_iterators())
+      if (cell->is_locally_owned())
+        cell_size_.push_back(cell->extent_in_direction(0));
+    cell_nodes_.reserve(cell_dofs.size());
+    for (const Index dof : cell_dofs)
+      cell_nodes_.push_back(numbering.place(dof));
+
+    n_owned_           = numbering.n_owned;
+    first_constrained_ = n_owned_ + numbering.ghosts.size();
+    row_start_         = std::move(numbering.row_start);
+    masters_           = std::move(numbering.masters);
+    row_start_.push_back(masters_.size()); // the zero node
+    n_local_ = first_constrained_ + row_start_.size() - 1;
+    std::replace(cell_nodes_.begin(), cell_nodes_.end(), unknown, n_local_ - 1);
+
+    dealii::IndexSet owned(numbering.n_global), ghosts(numbering.n_global);
+    owned.add_range(numbering.first_owned, numbering.first_owned + n_owned_);
+    ghosts.add_indices(numbering.ghosts.begin(), numbering.ghosts.end());
+    const MPI_Comm communicator = space.partitioner()->get_mpi_communicator();
+    const auto     partitioner  = [&](const unsigned int n) {
+      return std::make_shared<dealii::Utilities::MPI::Partitioner>(with_components(owned, n), with_components(ghosts, n), communicator);
+    };
+    partitioner_      = partitioner(n_components);
+    full_partitioner_ = partitioner(stride());
+    float_buffer_.resize(full_partitioner_->n_import_indices());
+    double_buffer_.resize(full_partitioner_->n_import_indices());
+  }
+
+
+  template <>
+  dealii::ArrayView<float>
+  NodeSpace::buffer() const
+  {
+    return {float_buffer_.data(), float_buffer_.size()};
+  }
+  template <>
+  dealii::ArrayView<double>
+  NodeSpace::buffer() const
+  {
+    return {double_buffer_.data(), double_buffer_.size()};
+  }
+
+
+  template <typename Number>
+  void
+  NodeSpace::load(const FluidVector &vector, Number *const values) const
+  {
+    const double *const from = vector.begin();
+    if (n_components_ == 1)
+      std::copy(from, from + n_owned_, values);
+    else
+      for (std::size_t i = 0; i < n_owned_; ++i)
+        {
+          for (unsigned int c = 0; c < 3; ++c)
+            values[4 * i + c] = from[3 * i + c];
+          values[4 * i + 3] = 0;
+        }
+  }
+
+
+  template <typename Number>
+  void
+  NodeSpace::store(const Number *const values, FluidVector &vector, const bool add) const
+  {
+    double *const      to = vector.begin();
+    const unsigned int nc = n_components_, n = stride();
+    for (std::size_t i = 0; i < n_owned_; ++i)
+      for (unsigned int c = 0; c < nc; ++c)
+        to[nc * i + c] = (add ? to[nc * i + c] : 0.) + values[n * i + c];
+  }
+
+
+  namespace
+  {
+    // The number of numbers a node is known to the compiler, and what is summed cannot be an alias of a weight.
+    template <unsigned int n, typename Number>
+    void
+    fill_constrained(const std::size_t                     first_constrained,
+                     const std::vector<unsigned int>      &row_start,
+                     const std::vector<NodeSpace::Master> &masters,
+                     Number *const                         values)
+    {
+      for (std::size_t row = 0; row + 1 < row_start.size(); ++row)
+        {
+          Number sum[n] = {};
+          for (unsigned int e = row_start[row]; e < row_start[row + 1]; ++e)
+            {
+              const Number  weight = masters[e].weight;
+              const Number *master = values + std::size_t(n) * masters[e].node;
+              for (unsigned int c = 0; c < n; ++c)
+                sum[c] += weight * master[c];
+            }
+          for (unsigned int c = 0; c < n; ++c)
+            values[n * (first_constrained + row) + c] = sum[c];
+        }
+    }
+
+
+    template <unsigned int n, typename Number>
+    void
+    give_to_masters(const std::size_t                     first_constrained,
+                    const std::vector<unsigned int>      &row_start,
+                    const std::vector<NodeSpace::Master> &masters,
+                    Number *const                         values)
+    {
+      for (std::size_t row = 0; row + 1 < row_start.size(); ++row)
+        {
+          Number value[n];
+          for (unsigned int c = 0; c < n; ++c)
+            value[c] = values[n * (first_constrained + row) + c];
+          for (unsigned int e = row_start[row]; e < row_start[row + 1]; ++e)
+            {
+              const Number weight = masters[e].weight;
+              Number      *master = values + std::size_t(n) * masters[e].node;
+              for (unsigned int c = 0; c < n; ++c)
+                master[c] += weight * value[c];
+            }
+        }
+    }
+  } // namespace
+
+
+  template <typename Number>
+  void
+  NodeSpace::update(Number *const values) const
+  {
+    const std::size_t n = stride();
+    if (full_partitioner_->n_mpi_processes() > 1)
+      {
+        const dealii::ArrayView<Number>       ghosts(values + n * n_owned_, full_partitioner_->n_ghost_indices());
+        const dealii::ArrayView<const Number> owned(values, n * n_owned_);
+        std::vector<MPI_Request>              requests;
+        full_partitioner_->template export_to_ghosted_array_start<Number, dealii::MemorySpace::Host>(0, owned, buffer<Number>(), ghosts, requests);
+        full_partitioner_->template export_to_ghosted_array_finish<Number, dealii::MemorySpace::Host>(ghosts, requests);
+      }
+    if (n == 4)
+      fill_constrained<4>(first_constrained_, row_start_, masters_, values);
+    else
+      fill_constrained<1>(first_constrained_, row_start_, masters_, values);
+  }
+
+
+  template <typename Number>
+  void
+  NodeSpace::collect(Number *const values) const
+  {
+    const std::size_t n = stride();
+    if (n == 4)
+      give_to_masters<4>(first_constrained_, row_start_, masters_, values);
+    else
+      give_to_masters<1>(first_constrained_, row_start_, masters_, values);
+    if (full_partitioner_->n_mpi_processes() > 1)
+      {
+        const dealii::ArrayView<Number>       ghosts(values + n * n_owned_, full_partitioner_->n_ghost_indices()), owned(values, n * n_owned_);
+        const dealii::ArrayView<Number>       temporary = buffer<Number>();
+        const dealii::ArrayView<const Number> received(temporary.data(), temporary.size());
+        std::vector<MPI_Request>              requests;
+        full_partitioner_->template import_from_ghosted_array_start<Number, dealii::MemorySpace::Host>(dealii::VectorOperation::add,
+                                                                                                       0,
+                                                                                                       ghosts,
+                                                                                                       temporary,
+                                                                                                       requests);
+        full_partitioner_->template import_from_ghosted_array_finish<Number, dealii::MemorySpace::Host>(dealii::VectorOperation::add,
+                                                                                                        received,
+                                                                                                        owned,
+                                                                                                        ghosts,
+                                                                                                        requests);
+      }
+  }
+
+
+  namespace
+  {
+    /** How a node of a cell depends on one free node. */
+    struct Dependence
+    {
+      unsigned int master, node; // the latter counted in the cell
+      double       weight;
+    };
+  } // namespace
+
+
+  void
+  NodeSpace::add_constrained_diagonal(const unsigned int        *nodes,
+                                      const double               factor,
+                                      const std::vector<double> &cell_matrix,
+                                      std::vector<double>       &diagonal) const
+  {
+    std::vector<Dependence> all;
+    for (unsigned int a = 0; a < nodes_per_cell_; ++a)
+      if (is_free(nodes[a]))
+        all.push_back({nodes[a], a, 1.});
+      else
+        for (const auto &[master, weight] : masters(nodes[a]))
+          all.push_back({master, a, weight});
+    std::sort(all.begin(), all.end(), [](const Dependence &x, const Dependence &y) { return x.master < y.master; });
+    for (auto begin = all.begin(); begin != all.end();)
+      {
+        const auto end = std::find_if(begin, all.end(), [&](const Dependence &d) { return d.master != begin->master; });
+        for (auto i = begin; i != end; ++i)
+          for (auto j = begin; j != end; ++j)
+            diagonal[begin->master] += factor * i->weight * j->weight * cell_matrix[nodes_per_cell_ * i->node + j->node];
+        begin = end;
+      }
+  }
+
+
+  std::vector<double>
+  NodeSpace::diagonal(const std::vector<double> &cell_matrix, const int power) const
+  {
+    std::vector<double> sums(n_local_, 0.);
+    for (unsigned int cell = 0; cell < n_cells(); ++cell)
+      {
+        const unsigned int *nodes  = cell_nodes(cell);
+        const double        factor = std::pow(cell_size_[cell], power);
+        if (std::all_of(nodes, nodes + nodes_per_cell_, [&](const unsigned int node) { return is_free(node); }))
+          for (unsigned int a = 0; a < nodes_per_cell_; ++a)
+            sums[nodes[a]] += factor * cell_matrix[(nodes_per_cell_ + 1) * a];
+        else
+          add_constrained_diagonal(nodes, factor, cell_matrix, sums);
+      }
+    std::vector<double> full(full_size(), 0.), result(n_owned_);
+    for (std::size_t i = 0; i < first_constrained_; ++i)
+      full[stride() * i] = sums[i];
+    collect(full.data());
+    for (std::size_t i = 0; i < n_owned_; ++i)
+      result[i] = full[stride() * i];
+    return result;
+  }
+
+
+#define TANKTREAD_INSTANTIATE(Number)                                        \
+  template void NodeSpace::load(const FluidVector &, Number *) const;        \
+  template void NodeSpace::store(const Number *, FluidVector &, bool) const; \
+  template void NodeSpace::update(Number *) const;                           \
+  template void NodeSpace::collect(Number *) const;
+  TANKTREAD_INSTANTIATE(float)
+  TANKTREAD_INSTANTIATE(double)
+} // namespace tanktread

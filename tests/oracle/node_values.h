@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: where the nodes of the own numbering are, in space and in deal.II's numbering.
+
+#ifndef tanktread_oracle_node_values_h
+#define tanktread_oracle_node_values_h
+
+#include <tanktread/fluid/taylor_hood_space.h>
+
+namespace tanktread::oracle
+{
+  /** Degree of freedom, counted among the locally owned ones, of each owned node. Throws std::logic_error if that is not one to one. */
+  std::vector<unsigned int>
+  dofs_of_nodes(const ScalarSpace &space, const NodeSpace &nodes);
+
+  /** Positions of the owned nodes, x and y in [-side/2, side/2). */
+  std::vector<dealii::Point<3>>
+  node_positions(const FluidMesh &mesh, const NodeSpace &nodes);
+
+  /** Number in [-1, 1] as random as can be, but the same for the same node on any number of ranks, and for a copy of it one period away. */
+  double
+  rough_value(const FluidMesh &mesh, const dealii::Point<3> &position, unsigned int component, unsigned int seed);
+
+  /** Rough values for all components of all nodes. */
+  void
+  set_rough(const FluidMesh &mesh, const NodeSpace &nodes, unsigned int seed, FluidVector &vector);
+
+  /** Points on a sphere; with a centre at an edge of the box it crosses both pairs of periodic faces. */
+  std::vector<dealii::Point<3>>
+  sphere_points(const dealii::Point<3> &centre, double radius);
+} // namespace tanktread::oracle
+
+#endif
