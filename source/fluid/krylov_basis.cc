@@ -113,7 +113,7 @@ namespace tanktread
   {
     coefficients.assign(n_, 0.);
     std::vector<double> sums(n_ + 1);
-    double norm = 0.;
+    double              norm = 0.;
     // Once would let the vectors' rounding grow tenfold an iteration.
     for (unsigned int pass = 0; pass < 2; ++pass)
       {

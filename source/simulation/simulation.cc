@@ -126,9 +126,9 @@ namespace tanktread
 
     std::ostringstream text;
     text << "Shell: " << surface_.n_control_points() << " control points, " << surface_.n_points() << " quadrature points, " << coupling_surface_.n_points()
-         << " coupling points. Fluid: cells from " << fluid_.mesh().cell_size(fluid_.mesh().coarsest_level()) << " a to " << fluid_.mesh().cell_size(fluid_.mesh().finest_level()) << " a, "
-         << fluid_.mesh().triangulation().n_global_active_cells() << " now, with " << fluid_.space().velocity->partitioner()->size() << " velocity and "
-         << fluid_.space().pressure->partitioner()->size() << " pressure unknowns.";
+         << " coupling points. Fluid: cells from " << fluid_.mesh().cell_size(fluid_.mesh().coarsest_level()) << " a to "
+         << fluid_.mesh().cell_size(fluid_.mesh().finest_level()) << " a, " << fluid_.mesh().triangulation().n_global_active_cells() << " now, with "
+         << fluid_.space().velocity->partitioner()->size() << " velocity and " << fluid_.space().pressure->partitioner()->size() << " pressure unknowns.";
     log_.line(text.str());
     record(first, false);
   }

@@ -177,7 +177,7 @@ namespace tanktread
     std::shared_ptr<const dealii::Utilities::MPI::Partitioner> partitioner_, full_partitioner_; // the latter has stride() numbers a node
     std::vector<unsigned int>                                  cell_nodes_;
     std::vector<double>                                        cell_size_;
-    std::vector<unsigned int>                                   row_start_; // of masters_, one row for each constrained node and one, empty, for the zero node
+    std::vector<unsigned int>                                  row_start_; // of masters_, one row for each constrained node and one, empty, for the zero node
     std::vector<Master>                                        masters_;
     mutable dealii::AlignedVector<float>                       float_buffer_; // for messages
     mutable dealii::AlignedVector<double>                      double_buffer_;
