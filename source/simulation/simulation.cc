@@ -36,7 +36,7 @@ namespace tanktread
       run.G              = parameters.scene.shear_number;
       run.khat           = parameters.scene.reduced_bending_modulus;
       run.box_side       = parameters.scene.box_side;
-      run.left_out       = {"inertia (Re = 0)", "variable viscosity (ratio 1: one scalar matrix for all velocity components)", "shell thickness (0)"};
+      run.left_out       = {"inertia (Re = 0)", "variable viscosity (ratio 1: Laplace form, each velocity component by itself)", "shell thickness (0)"};
       if (parameters.scene.bending_modulus() == 0.)
         run.left_out.push_back("bending and second derivatives of the surface (khat = 0)");
       return run;
@@ -90,7 +90,7 @@ namespace tanktread
   void
   Simulation::refine_around_shell()
   {
-    const Timings::Scope scope(timings_, "Fluid mesh and matrices");
+    const Timings::Scope scope(timings_, "Fluid mesh and multigrid");
     fluid_.adapt(coupling_.points(state_.x));
     solver_.attach(fluid_);
     stepper_.forget_flow();

@@ -89,7 +89,7 @@ namespace tanktread
 
 
   /**
-   * Largest eigenvalue of D^{-1} A by `n_steps` of Lanczos' method from a rough start: a lower bound, two or three per cent below, for which power iteration would need a hundred
+   * Largest eigenvalue of D^{-1} A by `n_steps` of Lanczos' method from a rough start: a lower bound, one to three per cent below, for which power iteration would need a hundred
    * steps. The start depends on the numbering, and so does the last per cent. x, Ax and direction are overwritten. Collective.
    */
   template <unsigned int stride, typename Number, typename Apply>

@@ -50,7 +50,7 @@ namespace tanktread
   };
 
   /**
-   * The pair of spaces. With constant viscosity the velocity components decouple, so all three share one scalar Q2 space.
+   * The pair of spaces. All three velocity components have the same nodes: one scalar Q2 space numbers them.
    *
    * Velocities are disturbances: they vanish at the walls, whatever the undisturbed flow is.
    */

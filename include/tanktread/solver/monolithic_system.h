@@ -19,7 +19,7 @@ namespace tanktread
     ControlPoints force;
   };
 
-  /** Zero vector with blocks (u_x, u_y, u_z, p, shell) for `n_control_points`. Collective. */
+  /** Zero vector with blocks (u, p, shell) for `n_control_points`. Collective. */
   FluidBlockVector
   monolithic_vector(const TaylorHoodSpace &space, unsigned int n_control_points);
 
@@ -60,7 +60,7 @@ namespace tanktread
 
   /**
    * Block-triangular: the shell's forces (their row is already close to the identity) and the pressures first, with the mass matrix for the Schur complement and the
-   * capsule's volume for that of the pressure jump; then one multigrid V-cycle a velocity component.
+   * capsule's volume for that of the pressure jump; then one multigrid V-cycle for the velocities.
    */
   class MonolithicPreconditioner
   {
