@@ -121,7 +121,7 @@ namespace
                                                  state,
                                                  scene.flow.velocity(x),
                                                  gradients,
-                                                 Linearisation{tau, h, 1e-8, PointDerivatives::frozen, tangent},
+                                                 Linearisation{tau, h, 1e-8, PointDerivatives::frozen, tangent, scene.flow.gradient()},
                                                  implicit);
     });
     const MonolithicOperator         matrix(scene.fluid.stokes(), *linear);
