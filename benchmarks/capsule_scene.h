@@ -25,7 +25,8 @@ namespace tanktread
       : shape(make_capsule({}, std::max(1l, std::lround(std::log2(cells / 8.)))))
       , surface(shape.topology, triangle_quadrature(3), Derivatives::second)
       , shell(surface, {}, {1. / shear_number, reduced_bending / shear_number}, shape.control_points)
-      , fluid(MPI_COMM_WORLD, box_side, {box_side / cells, 2.5, 1.5})
+      , mesh_parameters{box_side / cells, 2.5, 1.5}
+      , fluid(MPI_COMM_WORLD, box_side, mesh_parameters)
       , coupling_surface(shape.topology,
                          triangle_quadrature(3, coupling_subdivisions(shape.topology, shape.control_points, 3, box_side / cells)),
                          Derivatives::first)
@@ -54,6 +55,7 @@ namespace tanktread
     FittedShape           shape;
     SubdivisionSurface    surface;
     Shell                 shell;
+    FluidMeshParameters   mesh_parameters;
     Fluid                 fluid;
     SubdivisionSurface    coupling_surface;
     Coupling              coupling;

@@ -56,7 +56,7 @@ namespace tanktread
   {
     std::string mesh;
     double      n_cells = 0.;
-    Entries     problem, solves_at_sphere, solves, steps;
+    Entries     problem, algebraic, solves_at_sphere, solves, steps;
   };
 
 
@@ -95,7 +95,7 @@ namespace tanktread
         head += " " + all[m - 1].mesh + " to " + all[m].mesh + " |";
         rule += "---:|";
       }
-    for (const auto part : {&Measurement::problem, &Measurement::solves_at_sphere, &Measurement::solves, &Measurement::steps})
+    for (const auto part : {&Measurement::problem, &Measurement::algebraic, &Measurement::solves_at_sphere, &Measurement::solves, &Measurement::steps})
       for (std::size_t i = 0; i < (all[0].*part).size(); ++i)
         {
           if ((all[0].*part)[i].cost == 0.)

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: what solves and time steps cost, mesh by mesh.
 //
-// Usage: mpirun -np N step_cost [--cells 32,64,128] [--dt 0.1]. Markdown tables on the standard output, progress on the standard error. A neo-Hookean sphere with
-// bending (G = 0.2, khat = 0.04) in shear, box 10 a, h = 10 a/cells, shell of level log2(cells/8).
+// Usage: mpirun -np N step_cost [--cells 32,64,128] [--dt 0.1] [--ml]. Markdown tables on the standard output, progress on the standard error. A neo-Hookean sphere with
+// bending (G = 0.2, khat = 0.04) in shear, box 10 a, h = 10 a/cells, shell of level log2(cells/8). With --ml the Stokes solves alone, compared with assembled matrices and
+// algebraic multigrid.
 
 #include <deal.II/base/mpi.h>
 
 #include <tanktread/base/exceptions.h>
 #include <tanktread/base/mpi_errors.h>
 
+#include "algebraic_base_line.h"
 #include "capsule_scene.h"
 #include "measurement.h"
 
@@ -28,6 +30,7 @@ namespace
   {
     std::vector<unsigned int> cells = {32, 64, 128};
     double                    dt    = 0.1;
+    bool                      ml    = false;
   };
 
 
@@ -42,7 +45,7 @@ namespace
 
   /** Mesh, multigrid and the Stokes equations with the forces of the deformed shell. Collective, like all that follows. */
   void
-  measure_stokes(Scene &scene, Measurement &result)
+  measure_stokes(Scene &scene, const bool ml, Measurement &result)
   {
     const double set_up = median_time(1, [&] { scene.refine_around(scene.deformed); });
     result.n_cells      = scene.fluid.mesh().triangulation().n_global_active_cells();
@@ -63,7 +66,8 @@ namespace
                          count("coupling points", scene.coupling_surface.n_points()),
                          seconds("mesh and multigrid", set_up),
                          solve("Stokes solve, iterations and s", report, time)};
-    // The same solve with assembled matrices and algebraic multigrid (--ml) belongs here: its set-up, ten solves and the ratio of the times.
+    if (ml)
+      result.algebraic = compare_with_algebraic(scene, scene.deformed, load, relative_tolerance);
   }
 
 
@@ -117,7 +121,7 @@ namespace
                                                  state,
                                                  scene.flow.velocity(x),
                                                  gradients,
-                                                 Linearisation{tau, h, 1e-8, PointDerivatives::frozen, tangent},
+                                                 Linearisation{tau, h, 1e-8, PointDerivatives::frozen, tangent, scene.flow.gradient()},
                                                  implicit);
     });
     const MonolithicOperator         matrix(scene.fluid.stokes(), *linear);
@@ -203,7 +207,7 @@ namespace
 
 
   Measurement
-  measure(const unsigned int cells, const double dt)
+  measure(const unsigned int cells, const double dt, const bool ml)
   {
     Measurement result;
     result.mesh         = "10a/" + std::to_string(cells);
@@ -213,8 +217,13 @@ namespace
     };
     forget_peak_memory();
     Scene scene(cells);
-    measure_stokes(scene, result);
+    measure_stokes(scene, ml, result);
     progress(result.problem);
+    if (ml)
+      {
+        progress(result.algebraic);
+        return result;
+      }
     result.solves = measure_implicit_solves(scene, "deformed", scene.deformed, Tangent::positive, dt);
     progress(result.solves);
     scene.refine_around(scene.shape.control_points);
@@ -248,17 +257,22 @@ namespace
   parse(const std::vector<std::string> &words)
   {
     Options options;
-    for (std::size_t i = 0; i < words.size(); i += 2)
+    for (std::size_t i = 0; i < words.size(); ++i)
       {
-        const std::string value = i + 1 < words.size() ? words[i + 1] : "";
-        if (words[i] == "--cells")
+        if (words[i] == "--ml")
+          {
+            options.ml = true;
+            continue;
+          }
+        const std::string name = words[i], value = ++i < words.size() ? words[i] : "";
+        if (name == "--cells")
           options.cells = read_cells(value);
-        else if (words[i] == "--dt")
+        else if (name == "--dt")
           options.dt = std::atof(value.c_str());
         else
           options.cells.clear();
         if (options.cells.empty() || !(options.dt > 0.))
-          throw InputError("step_cost: got '" + words[i] + " " + value + "'; allowed: --cells 32,64,128 (at least 8 each) and --dt 0.1");
+          throw InputError("step_cost: got '" + name + " " + value + "'; allowed: --cells 32,64,128 (at least 8 each), --dt 0.1 and --ml");
       }
     return options;
   }
@@ -270,21 +284,27 @@ namespace
     const Options            options = parse(words);
     std::vector<Measurement> all;
     for (const unsigned int cells : options.cells)
-      all.push_back(measure(cells, options.dt));
+      all.push_back(measure(cells, options.dt, options.ml));
     if (!is_first_rank())
       return;
     const std::string dt = formatted("%g", options.dt);
-    std::cout
-      << "Ranks: " << dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) << "; relative tolerance of the linear solves: " << relative_tolerance << ".\n\n"
-      << table("The mesh, and a Stokes solve from zero with the forces of a deformed shell:", all, &Measurement::problem)
-      << table("Implicit solves at the sphere with (dt E_s/(mu a), dt kappa_B/(mu a^3)), dt = " + dt + ", iterations and s:",
-               all,
-               &Measurement::solves_at_sphere)
-      << table(
-           "The same at the deformed shell, compressed in two directions, with the positive tangent, to which Newton's method resorts where the exact one is indefinite:",
-           all,
-           &Measurement::solves)
-      << table("Steps of backward Euler, dt = " + dt + ", and the shares of their time; the first five within the linear solver:", all, &Measurement::steps);
+    std::cout << "Ranks: " << dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) << "; relative tolerance of the linear solves: " << relative_tolerance
+              << ".\n\n"
+              << table("The mesh, and a Stokes solve from zero with the forces of a deformed shell:", all, &Measurement::problem);
+    if (options.ml)
+      std::cout << table("That solve, and the same with assembled matrices and algebraic multigrid (ML); set-up without what the mesh takes alone:",
+                         all,
+                         &Measurement::algebraic);
+    else
+      std::cout
+        << table("Implicit solves at the sphere with (dt E_s/(mu a), dt kappa_B/(mu a^3)), dt = " + dt + ", iterations and s:",
+                 all,
+                 &Measurement::solves_at_sphere)
+        << table(
+             "The same at the deformed shell, compressed in two directions, with the positive tangent, to which Newton's method resorts where the exact one is indefinite:",
+             all,
+             &Measurement::solves)
+        << table("Steps of backward Euler, dt = " + dt + ", and the shares of their time; the first five within the linear solver:", all, &Measurement::steps);
     if (all.size() > 1)
       std::cout << table_of_exponents(all);
   }

@@ -25,13 +25,14 @@ namespace tanktread
 
 
   void
-  ImplicitShell::renew(const SparseMatrix &Z, const SparseMatrix &K_pi, const double tau)
+  ImplicitShell::renew(const SparseMatrix &Z, const Eigen::Matrix3d &flow_gradient, const SparseMatrix &K_pi, const double tau)
   {
     discard();
     on_first_rank(communicator_, [&] {
       SparseMatrix sum = K_pi;
       sum.coeffs() *= tau;
-      add_for_three_components(Z, sum);
+      drift_ = Eigen::Matrix3d::Identity() - tau * flow_gradient;
+      add_for_three_components(Z, sum, drift_);
       factors_.factorise(sum, "The shell's implicit operator, for this time step,");
       Z_ = Z;
     });
@@ -73,6 +74,6 @@ namespace tanktread
   {
     if (!first_rank_)
       return ControlPoints::Zero(force.rows(), 3);
-    return Z_ * velocity(force);
+    return Z_ * velocity(force) * drift_.transpose();
   }
 } // namespace tanktread

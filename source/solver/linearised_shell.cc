@@ -7,6 +7,8 @@
 #include <tanktread/surface/surface_geometry.h>
 #include <tanktread/surface/surface_operators.h>
 
+#include <cmath>
+
 namespace tanktread
 {
   namespace
@@ -52,9 +54,11 @@ namespace tanktread
     if (choice.tangent == Tangent::exact)
       stiffness_.coeffs() -= state.pressure_jump * volume_hessian_.coeffs();
     if (!implicit_shell.serves(tau_))
-      implicit_shell.renew(inverse_mobility(surface, state.x, choice.h), stiffness_, tau_);
+      implicit_shell.renew(inverse_mobility(surface, state.x, choice.h), choice.flow_gradient, stiffness_, tau_);
 
-    gamma.coeffs() = tau_ * gamma.coeffs() + state.volume_shift * volume_hessian_.coeffs();
+    gamma.coeffs() *= tau_;
+    if (std::abs(state.volume_shift) <= choice.h / (2. * dealii::numbers::PI))
+      gamma.coeffs() += state.volume_shift * volume_hessian_.coeffs();
     motion_.emplace(coupling, std::move(gamma), choice.accuracy);
     volume_response_ = motion_->solve(volume_gradient_);
   }

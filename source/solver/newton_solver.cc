@@ -259,9 +259,13 @@ namespace tanktread
             if (near && !cautious && tangent_ == Tangent::positive)
               use(Tangent::exact);
             const unsigned int    renewals = implicit_shell_.n_renewals();
-            const LinearisedShell shell    = linearised(
-              trial,
-              {tau, finest_cell(), motion_accuracy(length / tau), near && !cautious ? PointDerivatives::complete : PointDerivatives::frozen, tangent_});
+            const LinearisedShell shell    = linearised(trial,
+                                                     {tau,
+                                                         finest_cell(),
+                                                         motion_accuracy(length / tau),
+                                                      near && !cautious ? PointDerivatives::complete : PointDerivatives::frozen,
+                                                         tangent_,
+                                                         flow_.gradient()});
             if (report.residuals.empty())
               report.residuals.push_back(norm(r, tau));
             const std::string failure = iterate(trial, r, shell, xhat, report);

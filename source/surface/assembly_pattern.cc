@@ -68,7 +68,7 @@ namespace tanktread
 
 
   void
-  add_for_three_components(const SparseMatrix &matrix, SparseMatrix &blocks)
+  add_for_three_components(const SparseMatrix &matrix, SparseMatrix &blocks, const Eigen::Matrix3d &components)
   {
     if (blocks.rows() != 3 * matrix.rows() || blocks.nonZeros() != 9 * matrix.nonZeros())
       throw std::logic_error("add_for_three_components() got matrices of different patterns.");
@@ -76,9 +76,10 @@ namespace tanktread
     for (int row = 0; row < matrix.rows(); ++row)
       for (int c = 0; c < 3; ++c)
         {
-          double *values = blocks.valuePtr() + blocks.outerIndexPtr()[3 * row + c] + c;
+          double *values = blocks.valuePtr() + blocks.outerIndexPtr()[3 * row + c];
           for (int k = starts[row]; k < starts[row + 1]; ++k, values += 3)
-            *values += matrix.valuePtr()[k];
+            for (int d = 0; d < 3; ++d)
+              values[d] += components(c, d) * matrix.valuePtr()[k];
         }
   }
 } // namespace tanktread

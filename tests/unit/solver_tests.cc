@@ -200,23 +200,25 @@ TEST(ImplicitShell, IsKeptWhileItServes)
   ImplicitShell implicit_shell(MPI_COMM_WORLD);
   const auto   &Z = scene.coupling.mass();
   EXPECT_FALSE(implicit_shell.serves(0.1));
-  const SparseMatrix K = random_blocks(scene.surface, 1e-3);
-  implicit_shell.renew(Z, K, 0.1);
+  const Eigen::Matrix3d g = UndisturbedFlow{3.}.gradient();
+  const SparseMatrix    K = random_blocks(scene.surface, 1e-3);
+  implicit_shell.renew(Z, g, K, 0.1);
   for (const auto &[tau, serves] : {std::pair<double, bool>{0.1, true}, {0.149, true}, {0.151, false}, {0.067, true}, {0.066, false}})
     EXPECT_EQ(implicit_shell.serves(tau), serves) << tau;
 
-  // Z (Z + tau K)^{-1}, on the first rank
+  // Z_tau (Z_tau + tau K)^{-1} with Z_tau = Z (1 - tau g), on the first rank
   const ControlPoints force = smooth_field(scene.state.x), velocity = implicit_shell.velocity(force);
   if (is_root())
     {
-      EXPECT_LT((Z * velocity + nodal(0.1 * (K * flat(velocity))) - force).norm(), 1e-12 * force.norm());
-      EXPECT_LT((implicit_shell.damped(force) - Z * velocity).norm(), 1e-12 * force.norm());
+      const ControlPoints resistance = Z * velocity * (Eigen::Matrix3d::Identity() - 0.1 * g).transpose();
+      EXPECT_LT((resistance + nodal(0.1 * (K * flat(velocity))) - force).norm(), 1e-12 * force.norm());
+      EXPECT_LT((implicit_shell.damped(force) - resistance).norm(), 1e-12 * force.norm());
     }
 
   implicit_shell.watch({true, 10, 1., 1e-2});
   implicit_shell.watch({true, 24, 1., 1e-4}); // 22 + 1 allowed, but 5 a decade
   EXPECT_FALSE(implicit_shell.serves(0.1));
-  implicit_shell.renew(Z, K, 0.1);
+  implicit_shell.renew(Z, g, K, 0.1);
   implicit_shell.watch({true, 10, 1., 1e-2});
   implicit_shell.watch({true, 22, 1., 1e-4});
   EXPECT_TRUE(implicit_shell.serves(0.1));
@@ -227,7 +229,7 @@ TEST(ImplicitShell, IsKeptWhileItServes)
   SparseMatrix minus_Z = scene.surface.pattern().block_matrix();
   add_for_three_components(Z, minus_Z);
   minus_Z *= -1.;
-  EXPECT_THROW(implicit_shell.renew(Z, minus_Z, 1.), NumericalError);
+  EXPECT_THROW(implicit_shell.renew(Z, Eigen::Matrix3d::Zero(), minus_Z, 1.), NumericalError);
   EXPECT_FALSE(implicit_shell.serves(1.));
 }
 

@@ -936,5 +936,12 @@ TEST(AssemblyPattern, AddsAMatrixForThreeComponents)
   add_for_three_components(mass, blocks);
   const ControlPoints wanted = before + mass * field;
   EXPECT_LT((times(blocks, field) - wanted).norm(), 1e-14 * wanted.norm());
+
+  Eigen::Matrix3d components;
+  components << 1., 2., 3., -4., 5., 6., 7., -8., 9.;
+  SparseMatrix mixed = volume_hessian(surface, x);
+  add_for_three_components(mass, mixed, components);
+  const ControlPoints wanted_of_mixed = before + mass * field * components.transpose();
+  EXPECT_LT((times(mixed, field) - wanted_of_mixed).norm(), 1e-14 * wanted_of_mixed.norm());
   EXPECT_THROW(add_for_three_components(blocks, blocks), std::logic_error);
 }

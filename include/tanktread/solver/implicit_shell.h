@@ -13,7 +13,8 @@
 namespace tanktread
 {
   /**
-   * The map Z (Z + tau K_pi)^{-1}, by which LinearisedShell multiplies the force row of the Newton system: Z, tau and K_pi = K - pi H_V of some linearisation.
+   * The map Z_tau (Z_tau + tau K_pi)^{-1}, Z_tau = Z (1 - tau grad u_inf), by which LinearisedShell multiplies the force row of the Newton system: Z, tau and
+   * K_pi = K - pi H_V of some linearisation.
    *
    * Any regular matrix would leave the solution of the system unchanged; this one makes it fast. So one made for an earlier shape serves as long as it makes it fast
    * enough, which linear solves are watched for.
@@ -29,9 +30,9 @@ namespace tanktread
     bool
     serves(double tau) const;
 
-    /** Replaces the operator. `Z` is NP x NP, `K_pi` 3 NP x 3 NP. Collective; throws NumericalError on all ranks when Z + tau K_pi is singular. */
+    /** Replaces the operator. `Z` is NP x NP, `flow_gradient` that of u_inf, `K_pi` 3 NP x 3 NP. Collective; throws NumericalError on all ranks when Z_tau + tau K_pi is singular. */
     void
-    renew(const SparseMatrix &Z, const SparseMatrix &K_pi, double tau);
+    renew(const SparseMatrix &Z, const Eigen::Matrix3d &flow_gradient, const SparseMatrix &K_pi, double tau);
 
     /**
      * To be told about every linear solve with this operator. It is worn out when one takes more than 1.1 times the iterations that a decade took in the first, and 1 more: an
@@ -54,11 +55,11 @@ namespace tanktread
       return n_renewals_;
     }
 
-    /** Z (Z + tau K_pi)^{-1} force on the first rank, zero on the others. */
+    /** Z_tau (Z_tau + tau K_pi)^{-1} force on the first rank, zero on the others. */
     ControlPoints
     damped(const ControlPoints &force) const;
 
-    /** (Z + tau K_pi)^{-1} force on the first rank, zero on the others: about how fast the shell moves to balance a force that is missing. */
+    /** (Z_tau + tau K_pi)^{-1} force on the first rank, zero on the others: about how fast the shell moves to balance a force that is missing. */
     ControlPoints
     velocity(const ControlPoints &force) const;
 
@@ -70,6 +71,7 @@ namespace tanktread
     double             iterations_per_decade_ = 0.; // of the first linear solve; 0: there was none
     unsigned int       n_renewals_            = 0;
     SparseMatrix       Z_;
+    Eigen::Matrix3d    drift_; // 1 - tau grad u_inf
     BlockFactorisation factors_;
   };
 } // namespace tanktread

@@ -41,8 +41,9 @@ namespace tanktread
     double           tau;      // effective length of the time step
     double           h;        // finest fluid cell
     double           accuracy; // relative error that the map dw may have, see ShellMotion
-    PointDerivatives derivatives = PointDerivatives::complete;
-    Tangent          tangent     = Tangent::exact; // positive: without the negative stiffness of a shell under pressure from its sides, and without -pi H_V
+    PointDerivatives derivatives   = PointDerivatives::complete;
+    Tangent          tangent       = Tangent::exact; // positive: without the negative stiffness of a shell under pressure from its sides, and without -pi H_V
+    Eigen::Matrix3d  flow_gradient = Eigen::Matrix3d::Zero(); // grad u_inf
   };
 
   /**
@@ -53,17 +54,21 @@ namespace tanktread
    *
    * The first line, dsigma eliminated, defines the linear map dx = tau dw(du) + dx0(r_x, r_V), so every iterate keeps the linearised volume.
    *
-   * The second row is multiplied by Z (Z + tau (K - pi H_V))^{-1}, where the sparse operator
+   * The second row is multiplied by Z_tau (Z_tau + tau (K - pi H_V))^{-1}, Z_tau = Z (1 - tau grad u_inf), where the sparse operator
    *
    *     Z = c0 M_s + c1 L_s,   c0 = 4 mu k1 k2/(k1 + k2),   c1 = 4 mu/(k1 + k2),   k1 = 2/a,   k2 = pi/h,
    *
    * (mass and Laplace-Beltrami matrices on the current surface) stands for the inverse of the surface mobility J A^{-1} J^T: c0 + c1 k^2 equals the symbol 4 mu k of
-   * that inverse for a plane at both ends of the resolved wave numbers. Eliminating the fluid exactly would leave (1 + tau K J A^{-1} J^T) dG, so after
-   * the multiplication the row is close to dG = ... for any stiffness. ImplicitShell holds this operator, and it may come from an earlier linearisation.
+   * that inverse for a plane at both ends of the resolved wave numbers. Eliminating the fluid exactly would leave about
+   * (1 + tau K (1 - tau grad u_inf)^{-1} J A^{-1} J^T) dG, so after the multiplication the row is close to dG = ... for any stiffness. ImplicitShell holds this operator, and it may come from an earlier linearisation.
    *
    * With PointDerivatives::frozen the derivatives of J(x) and R(x) by x are left out, but for the undisturbed flow's: Gamma is that of grad u_inf and D_R = 0. They are the
    * derivatives of piecewise polynomials at the quadrature points, true only while a point stays in its cell; for longer ways the incomplete system is the better model of what
    * happens, and it is never indefinite because of them.
+   *
+   * H_V has eigenvalues up to about pi/h against M, so that the first matrix is indefinite for larger |sigma| than h/pi, without the whole system being: dx is eliminated
+   * before the stiffness of the shell can damp it. sigma H_V is therefore left out for |sigma| > h/(2 pi). That is long after what the volume needs in common time steps, and costs
+   * Newton's method the second order, not the convergence: the shell's stiffness keeps what is neglected small.
    *
    * tau = 0 freezes the shell: then dG = 0 and no derivative of the forces is needed.
    */
@@ -150,7 +155,7 @@ namespace tanktread
     ControlPoints              volume_response_; // A^{-1} v
     SparseMatrix               volume_hessian_;  // H_V
     SparseMatrix               stiffness_;       // K - pi H_V
-    std::optional<ShellMotion> motion_;          // A = M - tau Gamma - sigma H_V; none if tau = 0
+    std::optional<ShellMotion> motion_;          // A = M - tau Gamma - sigma H_V or without the last; none if tau = 0
   };
 } // namespace tanktread
 

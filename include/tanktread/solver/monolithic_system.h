@@ -37,7 +37,7 @@ namespace tanktread
    *                      A du - B^T dp - R(dG + v dpi) - D_R dx = ...     D_R dx: motion of the spreading points
    *                                                      - B du = ...
    *                                                 - d(v . J u) = ...     volume flux through the shell
-   *         Z (Z + tau (K - pi H_V))^{-1} (dG + (K - pi H_V) dx) = ...     dx = displacement(du) + known part
+   *         Z_tau (Z_tau + tau (K - pi H_V))^{-1} (dG + (K - pi H_V) dx) = ...     dx = displacement(du) + known part
    */
   class MonolithicOperator
   {

@@ -47,7 +47,7 @@ namespace tanktread
    * xhat and tau carry the time scheme: x_n and dt for backward Euler. The pressure jump pi lets no volume through the shell at the new time level; what a finite step
    * along such a velocity still changes of the volume is an error of the time scheme, which the uniform normal displacement sigma m takes away. (To ask
    * the fluid for that volume instead would drive flow through the shell against incompressibility, with a pressure jump that grows like dt/h.) All parts of a residual are measured as velocities of the shell, in a per unit of
-   * time: that of J P^{-1} (r_u, r_p) with the Stokes preconditioner P, |r_x| / tau, |(Z + tau (K - pi H_V))^{-1} r_F| with the operator that ImplicitShell holds, r_pi / (3 V0) and r_V / (3 V0 tau), the first three as root mean squares over the
+   * time: that of J P^{-1} (r_u, r_p) with the Stokes preconditioner P, |r_x| / tau, |(Z_tau + tau (K - pi H_V))^{-1} r_F| with the operator that ImplicitShell holds, r_pi / (3 V0) and r_V / (3 V0 tau), the first three as root mean squares over the
    * control points. (The Euclidean norm of the load vector r_u would not do: moving the shell within a cell redistributes loads among the
    * nodes, which changes the vector much and the flow little.)
    */

@@ -22,6 +22,15 @@ namespace tanktread
       result.col(0)        = shear_rate * positions.col(2);
       return result;
     }
+
+    /** Its gradient, entry (c, d) being du_c/dx_d. */
+    Eigen::Matrix3d
+    gradient() const
+    {
+      Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
+      result(0, 2)           = shear_rate;
+      return result;
+    }
   };
 
   /**

@@ -66,11 +66,11 @@ namespace tanktread
   };
 
   /**
-   * blocks += matrix (x) 3 x 3 identity, for a scalar_matrix() and a block_matrix() of the same pattern. Throws std::logic_error when the numbers of entries do not
+   * blocks += matrix (x) `components`, for a scalar_matrix() and a block_matrix() of the same pattern. Throws std::logic_error when the numbers of entries do not
    * fit.
    */
   void
-  add_for_three_components(const SparseMatrix &matrix, SparseMatrix &blocks);
+  add_for_three_components(const SparseMatrix &matrix, SparseMatrix &blocks, const Eigen::Matrix3d &components = Eigen::Matrix3d::Identity());
 } // namespace tanktread
 
 #endif
