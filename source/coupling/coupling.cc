@@ -9,6 +9,7 @@
 #include <tanktread/surface/surface_operators.h>
 
 #include <array>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -60,12 +61,16 @@ namespace tanktread
   } // namespace
 
 
-  Coupling::Coupling(const SubdivisionSurface &surface, Eigen::VectorXd reference_weights)
+  Coupling::Coupling(const SubdivisionSurface &surface, Eigen::VectorXd reference_weights, const Interface interface)
     : surface_(surface)
+    , interface_(interface)
     , weights_(std::move(reference_weights))
     , mass_(mass_matrix(surface, weights_))
     , mass_inverse_(mass_)
-  {}
+  {
+    if (interface == Interface::enriched && surface.derivatives() != Derivatives::second)
+      throw std::logic_error("The enriched interface needs second derivatives of the coupling's surface.");
+  }
 
 
   void
@@ -73,6 +78,9 @@ namespace tanktread
   {
     communicator_  = space.mesh.communicator();
     interpolation_ = std::make_unique<PointInterpolation>(space);
+    x_.resize(0, 3);
+    if (interface_ == Interface::enriched)
+      enrichment_ = std::make_unique<JumpEnrichment>(space);
     local_faces_.clear();
   }
 
@@ -105,8 +113,9 @@ namespace tanktread
 
 
   void
-  Coupling::move(const ControlPoints &x)
+  Coupling::move(const ControlPoints &x, const ControlPoints &volume_gradient)
   {
+    x_ = x;
     set_points(x, points_);
     interpolation_->reinit(points_);
 
@@ -119,13 +128,65 @@ namespace tanktread
           local_faces_.push_back({face, r, r});
         ++local_faces_.back().end;
       }
+    if (interface_ == Interface::plain)
+      return;
+    volume_gradient_ = volume_gradient;
+    normal_field_    = density(volume_gradient);
+    set_point_forces(normal_field_, normal_forces_);
+    enrichment_->move(quadratic_patches(surface_, x), area_weights(surface_, x), *interpolation_);
+  }
+
+
+  double
+  Coupling::distance(const ControlPoints &x) const
+  {
+    return x_.rows() == x.rows() ? (x - x_).rowwise().norm().maxCoeff() : std::numeric_limits<double>::infinity();
   }
 
 
   ControlPoints
-  Coupling::velocity_moments(const FluidBlockVector &u) const
+  Coupling::velocity_moments(const FluidBlockVector &fields) const
   {
-    interpolation_->values(u, values_);
+    return all_moments(fields, nullptr);
+  }
+
+
+  ControlPoints
+  Coupling::velocity_moments(const FluidBlockVector &fields, const ControlPoints &f) const
+  {
+    return all_moments(fields, &f);
+  }
+
+
+  ControlPoints
+  Coupling::all_moments(const FluidBlockVector &fields, const ControlPoints *const f) const
+  {
+    interpolation_->values(fields, values_);
+    if (interface_ == Interface::plain)
+      return sum_moments(values_);
+
+    enriched_values_.assign(values_.size(), 0.);
+    if (f != nullptr)
+      {
+        set_point_forces(density(*f), enriched_forces_);
+        project(*f);
+      }
+    enrichment_->add_velocities(fields, f != nullptr ? &enriched_forces_ : nullptr, enriched_values_);
+    // The transpose of P takes the multiple of v away that makes the further moments orthogonal to m = M^{-1} v.
+    double flux = 0.;
+    for (std::size_t i = 0; i < values_.size(); ++i)
+      {
+        flux += normal_forces_[i] * enriched_values_[i];
+        values_[i] += enriched_values_[i];
+      }
+    MPI_Allreduce(MPI_IN_PLACE, &flux, 1, MPI_DOUBLE, MPI_SUM, communicator_);
+    return sum_moments(values_) - flux / normal_field_.cwiseProduct(volume_gradient_).sum() * volume_gradient_;
+  }
+
+
+  ControlPoints
+  Coupling::sum_moments(const std::vector<double> &values) const
+  {
     const auto        &local  = interpolation_->local_points();
     const unsigned int n      = surface_.support_size();
     ControlPoints      result = ControlPoints::Zero(surface_.n_control_points(), 3);
@@ -134,7 +195,7 @@ namespace tanktread
         const int *const support = surface_.support(face);
         face_.clear();
         for (unsigned int r = begin; r < end; ++r)
-          face_.push_back(weights_[local[r]] * Vector4(&values_[3 * r]));
+          face_.push_back(weights_[local[r]] * Vector4(&values[3 * r]));
         for (unsigned int i = 0; i < n; ++i)
           {
             Vector4 sum;
@@ -150,9 +211,40 @@ namespace tanktread
 
 
   ControlPoints
-  Coupling::interpolate(const FluidBlockVector &u) const
+  Coupling::interpolate(const FluidBlockVector &fields) const
   {
-    return density(velocity_moments(u));
+    return density(velocity_moments(fields));
+  }
+
+
+  ControlPoints
+  Coupling::interpolate(const FluidBlockVector &fields, const ControlPoints &f) const
+  {
+    return density(velocity_moments(fields, f));
+  }
+
+
+  void
+  Coupling::set_point_forces(const ControlPoints &density, std::vector<double> &forces) const
+  {
+    const auto   &local = interpolation_->local_points();
+    FaceValues<1> values(surface_, {&density}, face_);
+    forces.resize(3 * local.size());
+    for (const auto &[face, begin, end] : local_faces_)
+      {
+        values.reinit(face);
+        for (unsigned int r = begin; r < end; ++r)
+          (weights_[local[r]] * values.at(local[r])[0]).store(&forces[3 * r]);
+      }
+  }
+
+
+  void
+  Coupling::project(const ControlPoints &f) const
+  {
+    const double factor = normal_field_.cwiseProduct(f).sum() / normal_field_.cwiseProduct(volume_gradient_).sum();
+    for (std::size_t i = 0; i < enriched_forces_.size(); ++i)
+      enriched_forces_[i] -= factor * normal_forces_[i];
   }
 
 
@@ -174,28 +266,31 @@ namespace tanktread
 
 
   void
-  Coupling::spread(const ControlPoints &f, FluidBlockVector &load) const
+  Coupling::spread_plainly(const ControlPoints &f, FluidBlockVector &load) const
   {
     mass_inverse_.solve(f, density_);
-    const auto   &local = interpolation_->local_points();
-    FaceValues<1> density(surface_, {&density_}, face_);
-    values_.resize(3 * local.size());
-    for (const auto &[face, begin, end] : local_faces_)
-      {
-        density.reinit(face);
-        for (unsigned int r = begin; r < end; ++r)
-          {
-            const auto value = density.at(local[r])[0];
-            (weights_[local[r]] * value).store(&values_[3 * r]);
-          }
-      }
+    set_point_forces(density_, values_);
     interpolation_->add_load(values_, {}, load);
+  }
+
+
+  void
+  Coupling::spread(const ControlPoints &f, FluidBlockVector &load) const
+  {
+    spread_plainly(f, load);
+    if (interface_ == Interface::plain)
+      return;
+    enriched_forces_ = values_;
+    project(f);
+    enrichment_->add_load(enriched_forces_, load);
   }
 
 
   void
   Coupling::spread_with_motion(const ControlPoints &f, const ControlPoints &dx, const ControlPoints &g, FluidBlockVector &load) const
   {
+    if (interface_ == Interface::enriched)
+      throw std::logic_error("The enriched interface does not know how its load changes when the points move.");
     mass_inverse_.solve(f, density_);
     const auto   &local = interpolation_->local_points();
     FaceValues<3> fields(surface_, {&density_, &g, &dx}, face_);

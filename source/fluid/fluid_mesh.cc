@@ -153,9 +153,9 @@ namespace tanktread
 
 
   bool
-  FluidMesh::covers(const std::vector<dealii::Point<3>> &points) const
+  FluidMesh::covers(const std::vector<dealii::Point<3>> &points, const double band) const
   {
-    const KeySet wanted = wanted_cells(points, 0.5);
+    const KeySet wanted = wanted_cells(points, band);
     bool         fine   = true;
     for (const auto &cell : triangulation_.active_cell_iterators())
       if (cell->is_locally_owned() && static_cast<unsigned int>(cell->level()) < finest_level_ && wanted.count(key(cell).packed()))

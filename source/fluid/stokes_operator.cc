@@ -41,16 +41,4 @@ namespace tanktread
     u.store(y_u_.data(), dst.block(velocity_block), false);
     p.store(y_p_.data(), dst.block(pressure_block), false);
   }
-
-
-  double
-  StokesOperator::dissipation(const FluidBlockVector &fields) const
-  {
-    FluidBlockVector velocity, product;
-    space_.reinit(velocity);
-    space_.reinit(product);
-    velocity.block(velocity_block) = fields.block(velocity_block);
-    vmult(product, velocity);
-    return product.block(velocity_block) * fields.block(velocity_block);
-  }
 } // namespace tanktread

@@ -80,14 +80,13 @@ namespace tanktread
   void
   Parameters::check(const ParameterSource &source) const
   {
-    const std::vector<std::function<void()>> checks = {[&] {
-      scene.check();
-                                                       },
-                                                       [&] {
-      capsule.check();
-    },
-                                             [&] { check_mesh_file(capsule); }, [&] { shell.check(); }, [&] { fluid_mesh.check(scene.box_side); },
-                                             [&] { solver.check(); }, [&] { output.check(); }, [&] { check_output_folder(output.directory); }};
+    const std::vector<std::function<void()>> checks = {[&] { scene.check(); },
+                                                       [&] { capsule.check(); },
+                                                       [&] { check_mesh_file(capsule); },
+                                                       [&] { shell.check(); },
+                                                       [&] { fluid_mesh.check(scene.box_side); },
+                                                       [&] { output.check(); },
+                                                       [&] { check_output_folder(output.directory); }};
 
     std::string errors;
     for (const auto &check : checks)

@@ -58,7 +58,6 @@ namespace tanktread
     result.energy        = shell.shell.energy(state.x);
     result.pressure_jump = state.pressure_jump;
     result.n_cells       = fluid.mesh().triangulation().n_global_active_cells();
-    result.dissipation   = fluid.stokes().dissipation(state.fluid);
     return result;
   }
 

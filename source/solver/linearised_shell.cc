@@ -38,6 +38,7 @@ namespace tanktread
     , implicit_shell_(implicit_shell)
     , tau_(choice.tau)
     , pressure_jump_(state.pressure_jump)
+    , points_move_(choice.derivatives == PointDerivatives::complete && choice.tau > 0.)
     , volume_gradient_(tanktread::volume_gradient(surface, state.x))
     , density_(coupling.density((choice.derivatives == PointDerivatives::complete ? 1. : 0.) * (state.force + state.pressure_jump * volume_gradient_)))
     , normal_field_(coupling.density(volume_gradient_))

@@ -54,7 +54,7 @@ namespace tanktread
     ControlPoints       moments, dx;
     {
       const Timings::Scope scope(timings_, "- coupling");
-      moments = coupling.velocity_moments(src);
+      moments = coupling.velocity_moments(src, unknowns.force);
     }
     {
       const Timings::Scope scope(timings_, "- shell");
@@ -66,7 +66,11 @@ namespace tanktread
     }
     {
       const Timings::Scope scope(timings_, "- coupling");
-      coupling.spread_with_motion(-unknowns.force - unknowns.pressure_jump * shell_.volume_gradient(), dx, -shell_.density(), dst);
+      const ControlPoints  force = -unknowns.force - unknowns.pressure_jump * shell_.volume_gradient();
+      if (shell_.points_move())
+        coupling.spread_with_motion(force, dx, -shell_.density(), dst);
+      else
+        coupling.spread(force, dst);
     }
     const Timings::Scope scope(timings_, "- shell");
     set_shell_unknowns(dst, {-shell_.flux(moments, dx), shell_.damped(unknowns.force + shell_.stiffness_times(dx))});
@@ -95,7 +99,7 @@ namespace tanktread
       loads_.block(b) = src.block(b);
     {
       const Timings::Scope scope(timings_, "- coupling");
-      shell_.coupling().spread(z.force + z.pressure_jump * shell_.volume_gradient(), loads_);
+      shell_.coupling().spread_plainly(z.force + z.pressure_jump * shell_.volume_gradient(), loads_);
     }
     stokes_.vmult(dst, loads_, timings_);
     set_shell_unknowns(dst, z);

@@ -57,17 +57,19 @@ namespace tanktread
 
 
   Residual
-  NewtonSolver::residual(const State &state, const ControlPoints &xhat, const double tau)
+  NewtonSolver::residual(const State &state, const ControlPoints &xhat, const double tau, const Points points)
   {
     const Timings::Scope scope(timings_, "Residual");
     Residual             r;
-    r.force  = state.force - shell_.force(state.x);
-    r.volume = enclosed_volume(surface_, state.x) - volume_;
-    coupling_.move(state.x);
+    r.force               = state.force - shell_.force(state.x);
+    r.volume              = enclosed_volume(surface_, state.x) - volume_;
+    const ControlPoints v = volume_gradient(surface_, state.x);
+    if (points == Points::follow)
+      coupling_.move(state.x, v);
 
     fluid_->space().reinit(r.fluid);
     fluid_->stokes().vmult(r.fluid, state.fluid);
-    const ControlPoints v = volume_gradient(surface_, state.x), velocity = shell_velocity(state);
+    const ControlPoints velocity = shell_velocity(state);
     coupling_.spread(-state.force - state.pressure_jump * v, r.fluid);
     r.shell_speed = shell_speed(r.fluid);
     r.flux        = v.cwiseProduct(velocity).sum();
@@ -79,7 +81,7 @@ namespace tanktread
   ControlPoints
   NewtonSolver::shell_velocity(const State &state) const
   {
-    return coupling_.interpolate(state.fluid) + flow_.velocity(state.x);
+    return coupling_.interpolate(state.fluid, state.force) + flow_.velocity(state.x);
   }
 
 
@@ -164,7 +166,8 @@ namespace tanktread
     FluidBlockVector    rhs = monolithic_vector(fluid_->space(), n_points), solution(rhs);
     for (unsigned int b = 0; b <= pressure_block; ++b)
       rhs.block(b).equ(-1., r.fluid.block(b));
-    coupling_.spread_with_motion(ControlPoints::Zero(n_points, 3), dx0, shell.density(), rhs);
+    if (shell.points_move())
+      coupling_.spread_with_motion(ControlPoints::Zero(n_points, 3), dx0, shell.density(), rhs);
     set_shell_unknowns(rhs, {r.flux + shell.flux(ControlPoints::Zero(n_points, 3), dx0), shell.damped(-r.force - shell.stiffness_times(dx0))});
 
     // With an exact tangent that is indefinite the solver gets nowhere; a definite one needs a few dozen iterations.
@@ -177,7 +180,7 @@ namespace tanktread
       increment.fluid.block(b) = solution.block(b);
     const ShellUnknowns unknowns = shell_unknowns(solution, fluid_->mesh().communicator());
     increment.pressure_jump      = unknowns.pressure_jump;
-    const ControlPoints moments  = coupling_.velocity_moments(solution);
+    const ControlPoints moments  = coupling_.velocity_moments(solution, unknowns.force);
     increment.x                  = dx0 + shell.displacement(moments);
     increment.volume_shift       = shell.volume_shift(moments, r.x, increment.x);
     increment.force              = shell.force_change(unknowns.force, increment.x);
@@ -198,7 +201,7 @@ namespace tanktread
       try
         {
           State        trial   = moved(state, increment, length);
-          Residual     r_trial = residual(trial, xhat, tau);
+          Residual     r_trial = residual(trial, xhat, tau, trial_points());
           const double after   = norm(r_trial, tau);
           if (after <= (1. - 1e-4 * length) * before || is_solved(r_trial, after))
             {
@@ -231,6 +234,29 @@ namespace tanktread
   }
 
 
+  NewtonSolver::Points
+  NewtonSolver::trial_points() const
+  {
+    return coupling_.interface() == Interface::enriched ? Points::stay : Points::follow;
+  }
+
+
+  bool
+  NewtonSolver::follow_shell(const State &state, unsigned int &n_moves)
+  {
+    // A node of the fluid that changes sides changes the residual by a jump: after a few moves positions within a small part of a cell are as good as any.
+    constexpr unsigned int max_moves = 4;
+    const double           tolerance = 0.002 * finest_cell();
+    const bool             moves     = trial_points() == Points::stay && n_moves < max_moves && coupling_.distance(state.x) > tolerance;
+    if (moves)
+      {
+        coupling_.move(state.x, volume_gradient(surface_, state.x));
+        ++n_moves;
+      }
+    return moves;
+  }
+
+
   void
   NewtonSolver::use(const Tangent tangent)
   {
@@ -246,24 +272,26 @@ namespace tanktread
     State        trial = state;
     try
       {
-        Residual r        = residual(trial, xhat, tau);
-        double   length   = dealii::Utilities::MPI::broadcast(fluid_->mesh().communicator(), tau * speed(r, tau), 0); // about that of the next displacement
-        bool     cautious = false;
+        Residual     r        = residual(trial, xhat, tau, Points::follow);
+        double       length   = dealii::Utilities::MPI::broadcast(fluid_->mesh().communicator(), tau * speed(r, tau), 0); // about that of the next displacement
+        bool         cautious = false;
+        unsigned int n_moves  = 1;
         for (bool solved = false; !solved;)
           {
             if (report.newton_iterations == parameters_.max_newton_iterations)
               throw NumericalError("no convergence in " + std::to_string(report.newton_iterations) + " Newton iterations");
-            if (!report.step_lengths.empty() && report.step_lengths.back() < 1.)
-              coupling_.move(trial.x); // where a rejected trial has left it
+            if (trial_points() == Points::follow && !report.step_lengths.empty() && report.step_lengths.back() < 1.)
+              coupling_.move(trial.x, volume_gradient(surface_, trial.x)); // where a rejected trial has left it
             const bool near = length < 0.25 * finest_cell();
             if (near && !cautious && tangent_ == Tangent::positive)
               use(Tangent::exact);
             const unsigned int    renewals = implicit_shell_.n_renewals();
+            const bool            complete = near && !cautious && coupling_.interface() == Interface::plain;
             const LinearisedShell shell    = linearised(trial,
                                                      {tau,
                                                          finest_cell(),
                                                          motion_accuracy(length / tau),
-                                                      near && !cautious ? PointDerivatives::complete : PointDerivatives::frozen,
+                                                      complete ? PointDerivatives::complete : PointDerivatives::frozen,
                                                          tangent_,
                                                          flow_.gradient()});
             if (report.residuals.empty())
@@ -278,6 +306,11 @@ namespace tanktread
                 else
                   throw NumericalError(failure);
                 cautious = tangent_ == Tangent::positive;
+              }
+            if (follow_shell(trial, n_moves))
+              {
+                r                       = residual(trial, xhat, tau, Points::stay);
+                report.residuals.back() = norm(r, tau);
               }
             solved = is_solved(r, report.residuals.back());
             length = tau * report.residuals.back();
@@ -298,7 +331,7 @@ namespace tanktread
   {
     state.force = shell_.force(state.x);
     State          increment;
-    const Residual r = residual(state, state.x, 0.);
+    const Residual r = residual(state, state.x, 0., Points::follow);
     // Relative to the loads of the shell and of unit pressure, not to what the initial guess has left of them.
     FluidBlockVector load;
     fluid_->space().reinit(load);

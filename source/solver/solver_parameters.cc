@@ -18,11 +18,13 @@ namespace tanktread
       coupling,
       {{"implicit", TimeCoupling::implicit_newton}, {"explicit", TimeCoupling::explicit_euler}},
       "implicit: all unknowns together by Newton's method; explicit: the shell moves with the old velocity, for comparison only, small steps.");
-    add_enum_parameter(prm,
-                       "Interface",
-                       interface,
-                       {{"plain", Interface::plain}, {"enriched", Interface::enriched}},
-                       "plain: finite-element consistent spreading and interpolation (first order); enriched is not in this version.");
+    add_enum_parameter(
+      prm,
+      "Interface",
+      interface,
+      {{"plain", Interface::plain}, {"enriched", Interface::enriched}},
+      "plain: finite-element consistent spreading and interpolation, first order in the cell size; enriched: with the kink of the velocity and the jump of the pressure "
+      "at the shell in the cells that it cuts, second order.");
     prm.add_parameter("Newton tolerance",
                       newton_tolerance,
                       "Norm of the residual at which a time step is solved, as a velocity of the shell in a per unit of time.",
@@ -38,13 +40,5 @@ namespace tanktread
                       Integer(1, 1000));
     prm.add_parameter("Maximal linear iterations", max_linear_iterations, "A linear solve that needs more has failed.", Integer(1, 100000));
     prm.leave_subsection();
-  }
-
-
-  void
-  SolverParameters::check() const
-  {
-    if (interface == Interface::enriched)
-      throw InputError("Solver/Interface is enriched, which this version does not have; allowed: plain.");
   }
 } // namespace tanktread

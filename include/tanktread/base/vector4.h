@@ -60,6 +60,15 @@ namespace tanktread
       zw_ *= factor;
       return *this;
     }
+    /** Product place by place. */
+    Vector4
+    times(const Vector4 &v) const
+    {
+      Vector4 result(*this);
+      result.xy_ *= v.xy_;
+      result.zw_ *= v.zw_;
+      return result;
+    }
     friend Vector4
     operator+(Vector4 v, const Vector4 &w)
     {

@@ -5,6 +5,8 @@
 #define tanktread_coupling_coupling_h
 
 #include <tanktread/base/vector4.h>
+#include <tanktread/coupling/interface.h>
+#include <tanktread/coupling/jump_enrichment.h>
 #include <tanktread/fluid/point_interpolation.h>
 #include <tanktread/surface/mass_inverse.h>
 #include <tanktread/surface/subdivision_surface.h>
@@ -23,25 +25,34 @@ namespace tanktread
    *     interpolation  J(x) u = M^{-1} S^T W Phi u        (velocity of the control points)
    *     spreading      R(x) f = Phi^T W S M^{-1} f = J^T f (load vector of nodal forces f)
    *
-   * so the power f . J u = (R f) . u agrees to rounding. Nodal fields are NP x 3 and replicated on all ranks; what belongs to a point is on the rank of its fluid cell
+   * so the power f . J u = (R f) . u agrees to rounding.
+   *
+   * With Interface::enriched R f has a part in the continuity equation too, J acts on the pressure, and the shell's own force moves it by Q f in addition, Q symmetric. The
+   * enrichment is for P f = f - v (m . f)/(m . v) only, v the volume gradient and m = M^{-1} v: a constant normal force is the business of the indicator pressure.
+   *
+   * Nodal fields are NP x 3 and replicated on all ranks; what belongs to a point is on the rank of its fluid cell
    * alone, so sums over points end in one sum over the ranks. Calls that take fluid vectors or velocity gradients are collective.
    */
   class Coupling
   {
   public:
     /**
-     * @param surface quadrature of the coupling, spaced at about half a fluid cell or less; kept by reference.
+     * @param surface quadrature of the coupling, spaced at about half a fluid cell or less; kept by reference. With second derivatives if the interface is enriched.
      * @param reference_weights w_q sqrt(det abar_q), length n_points.
      */
-    Coupling(const SubdivisionSurface &surface, Eigen::VectorXd reference_weights);
+    Coupling(const SubdivisionSurface &surface, Eigen::VectorXd reference_weights, Interface interface = Interface::plain);
 
     /** To be called for every new fluid mesh, before move(). Keeps `space` by reference. */
     void
     attach(const TaylorHoodSpace &space);
 
-    /** Moves the quadrature points to S x. Collective. Throws NumericalError when one leaves the box. */
+    /** Moves the quadrature points to S x. @param volume_gradient v at x, used by the enriched interface. Collective. Throws NumericalError when a point leaves the box. */
     void
-    move(const ControlPoints &x);
+    move(const ControlPoints &x, const ControlPoints &volume_gradient = {});
+
+    /** Largest distance of a control point from where it was when the points were moved last; infinite before that. */
+    double
+    distance(const ControlPoints &x) const;
 
     /** Number of quadrature points on this rank since move(). */
     unsigned int
@@ -54,13 +65,21 @@ namespace tanktread
     std::vector<dealii::Point<3>>
     points(const ControlPoints &x) const;
 
-    /** S^T W Phi u: what M has to be inverted on to give J u. */
+    /** M J fields: S^T W Phi u, and what the enrichment adds. */
     ControlPoints
-    velocity_moments(const FluidBlockVector &u) const;
+    velocity_moments(const FluidBlockVector &fields) const;
 
-    /** J u. */
+    /** M (J fields + Q f). */
     ControlPoints
-    interpolate(const FluidBlockVector &u) const;
+    velocity_moments(const FluidBlockVector &fields, const ControlPoints &f) const;
+
+    /** J fields. */
+    ControlPoints
+    interpolate(const FluidBlockVector &fields) const;
+
+    /** J fields + Q f: the shell's part of the velocity that nodal forces f make. */
+    ControlPoints
+    interpolate(const FluidBlockVector &fields, const ControlPoints &f) const;
 
     /** grad u at the points of this rank, from inside the cells that they lie in. */
     VelocityGradients
@@ -70,12 +89,22 @@ namespace tanktread
     ControlPoints
     density(const ControlPoints &f) const;
 
+    Interface
+    interface() const
+    {
+      return interface_;
+    }
+
+    /** load += R f without what the enrichment adds. */
+    void
+    spread_plainly(const ControlPoints &f, FluidBlockVector &load) const;
+
     /** load += R f. */
     void
     spread(const ControlPoints &f, FluidBlockVector &load) const;
 
     /**
-     * load += R f + sum_q w_q (S dx)_q . grad Phi(X_q) (S g)_q, the second term being the change of R f0 when the shell moves by dx.
+     * load += R f + sum_q w_q (S dx)_q . grad Phi(X_q) (S g)_q, plain interface only, the second term being the change of R f0 when the shell moves by dx.
      *
      * @param g = density(f0).
      */
@@ -103,6 +132,22 @@ namespace tanktread
     }
 
   private:
+    /** M (J fields + Q f), the latter unless null. */
+    ControlPoints
+    all_moments(const FluidBlockVector &fields, const ControlPoints *f) const;
+
+    /** S^T W values, summed over the ranks. */
+    ControlPoints
+    sum_moments(const std::vector<double> &values) const;
+
+    /** Forces at the local points of a density given by its control points. */
+    void
+    set_point_forces(const ControlPoints &density, std::vector<double> &forces) const;
+
+    /** Makes enriched_forces_, those of f, those of P f. */
+    void
+    project(const ControlPoints &f) const;
+
     /** Consecutive local points [begin, end) in one face. */
     struct FacePoints
     {
@@ -117,17 +162,21 @@ namespace tanktread
     add_gradients(const FacePoints &points, const VelocityGradients &gradients, double *matrix_values) const;
 
     const SubdivisionSurface           &surface_;
+    Interface                           interface_;
     Eigen::VectorXd                     weights_;
     SparseMatrix                        mass_;
     MassInverse                         mass_inverse_;
     MPI_Comm                            communicator_ = MPI_COMM_NULL;
     std::unique_ptr<PointInterpolation> interpolation_;
+    std::unique_ptr<JumpEnrichment>     enrichment_; // only with Interface::enriched
     std::vector<FacePoints>             local_faces_;
+    ControlPoints                       x_, volume_gradient_, normal_field_; // where the shell was moved to, v and m = M^{-1} v there
 
     // Memory of the calls, kept between them.
     std::vector<dealii::Point<3>> points_;
     mutable ControlPoints         density_;
-    mutable std::vector<double>   values_, moments_;
+    std::vector<double>           normal_forces_; // of the density m, at the local points
+    mutable std::vector<double>   values_, moments_, enriched_forces_, enriched_values_;
     mutable std::vector<Vector4>  face_;
   };
 

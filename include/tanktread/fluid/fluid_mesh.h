@@ -68,9 +68,9 @@ namespace tanktread
     bool
     adapt(const std::vector<dealii::Point<3>> &points);
 
-    /** True while every cell closer than half a finest cell to one of `points` is a finest one, that is, as long as the band need not follow the shell. */
+    /** True while every cell closer than `band` finest cells to one of `points` is a finest one, that is, as long as the mesh need not follow the shell. */
     bool
-    covers(const std::vector<dealii::Point<3>> &points) const;
+    covers(const std::vector<dealii::Point<3>> &points, double band = 0.5) const;
 
     /** A cube of some level and a point's position in it, in [0, 1)^3. */
     struct Place

@@ -36,6 +36,18 @@ namespace tanktread
       return local_points_;
     }
 
+    /** The cells (of this rank) that the local points are in, and their positions in the unit cube. */
+    const std::vector<unsigned int> &
+    cells() const
+    {
+      return cells_;
+    }
+    const std::vector<dealii::Point<3>> &
+    unit_positions() const
+    {
+      return unit_;
+    }
+
     /** values[3 r + c] = u_c at the r-th local point. Collective. */
     void
     values(const FluidBlockVector &velocity, std::vector<double> &values) const;

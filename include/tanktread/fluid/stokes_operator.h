@@ -23,10 +23,6 @@ namespace tanktread
     void
     vmult(FluidBlockVector &dst, const FluidBlockVector &src) const;
 
-    /** (grad u, grad u) of the velocity: what the disturbance flow dissipates. Collective. */
-    double
-    dissipation(const FluidBlockVector &fields) const;
-
     const TaylorHoodSpace &
     space() const
     {

@@ -118,6 +118,12 @@ namespace tanktread
     ControlPoints
     force_change(const ControlPoints &dG, const ControlPoints &dx) const;
 
+    /** Whether the system knows what the motion of the spreading points does; otherwise density() is zero. */
+    bool
+    points_move() const
+    {
+      return points_move_;
+    }
     double
     tau() const
     {
@@ -149,6 +155,7 @@ namespace tanktread
     const Coupling            &coupling_;
     const ImplicitShell       &implicit_shell_;
     double                     tau_, pressure_jump_;
+    bool                       points_move_;
     ControlPoints              volume_gradient_, density_;
     ControlPoints              normal_field_;    // m = M^{-1} v
     ControlPoints              flux_gradient_;   // derivative of that rate by x: Gamma^T m + H_V (J u + u_inf)

@@ -98,8 +98,21 @@ namespace tanktread
     }
 
   private:
+    /** Whether the coupling's points go to where the state has the shell. */
+    enum class Points
+    {
+      follow,
+      stay
+    };
+
     Residual
-    residual(const State &state, const ControlPoints &xhat, double tau);
+    residual(const State &state, const ControlPoints &xhat, double tau, Points points);
+    /** What line search does with the points: those of the enriched interface stay, at fixed positions J is the transpose of R and the linear system their exact derivative. */
+    Points
+    trial_points() const;
+    /** With the enriched interface: moves the points after the shell where that matters, and if they have not been moved too often in this step. Returns true if they moved. */
+    bool
+    follow_shell(const State &state, unsigned int &n_moves);
     /** Part of the norm that needs no linearisation. */
     double
     speed(const Residual &r, double tau) const;

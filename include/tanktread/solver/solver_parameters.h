@@ -4,6 +4,8 @@
 #ifndef tanktread_solver_solver_parameters_h
 #define tanktread_solver_solver_parameters_h
 
+#include <tanktread/coupling/interface.h>
+
 namespace dealii
 {
   class ParameterHandler;
@@ -18,17 +20,10 @@ namespace tanktread
     explicit_euler   // the shell moves with the velocity of the old time level; for comparison only
   };
 
-  /** How the discrete fluid sees the shell's forces. */
-  enum class Interface
-  {
-    plain, // finite-element consistent spreading, first order
-    enriched
-  };
-
   struct SolverParameters
   {
     TimeCoupling coupling              = TimeCoupling::implicit_newton;
-    Interface    interface             = Interface::plain;
+    Interface    interface             = Interface::enriched;
     double       newton_tolerance      = 1e-5;
     double       volume_tolerance      = 1e-9;
     double       linear_tolerance      = 0.1;
@@ -38,10 +33,6 @@ namespace tanktread
     /** Declares section "Solver" in `prm`; parsing fills this object, which has to outlive `prm`. */
     void
     add_parameters(dealii::ParameterHandler &prm);
-
-    /** Throws InputError for what this version does not have. */
-    void
-    check() const;
   };
 } // namespace tanktread
 

@@ -6,11 +6,15 @@
 
 #include <tanktread/surface/subdivision_surface.h>
 
+#include <array>
+#include <map>
+#include <vector>
+
 namespace tanktread
 {
   /**
-   * Tells inside from outside by the winding number 1/(4 pi) sum_q n_q . (X_q - y)/|X_q - y|^3 dGamma_q, which is 1 inside and 0 outside. By quadrature it is exact up
-   * to points closer to the surface than about the spacing of the quadrature points; those are told by the normal of the nearest quadrature point.
+   * Tells inside from outside. A point within a few spacings of the quadrature points is told by the normal of the nearest one; any other by the winding number
+   * 1/(4 pi) sum_c n_c . (X_c - y)/|X_c - y|^3 dGamma_c, which is 1 inside and 0 outside, with sums over the quadrature points of boxes as large as that distance in place of the points themselves.
    */
   class Interior
   {
@@ -28,9 +32,16 @@ namespace tanktread
     }
 
   private:
-    ControlPoints   positions_, area_normals_;
-    Eigen::Vector3d low_, high_, centre_;
-    double          spacing_squared_;
+    using Box = std::array<int, 3>;
+
+    Box
+    box(const Eigen::Vector3d &y) const;
+
+    ControlPoints                            positions_, normals_;
+    ControlPoints                            box_centres_, box_area_normals_;
+    double                                   box_size_;
+    std::map<Box, std::vector<Eigen::Index>> points_;
+    Eigen::Vector3d                          low_, high_, centre_;
   };
 } // namespace tanktread
 

@@ -1,0 +1,569 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: the kink of the velocity and the jump of the pressure at the shell, in the cells that it cuts.
+
+#include <deal.II/base/mpi.h>
+
+#include <tanktread/coupling/jump_enrichment.h>
+#include <tanktread/fluid/stokes_operator.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+// Compiled for several instruction sets, the best of which is chosen when the program starts.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#  define TANKTREAD_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#  define TANKTREAD_CLONES
+#endif
+#define TANKTREAD_INLINE [[gnu::always_inline]] inline
+
+namespace tanktread
+{
+  namespace
+  {
+    /** Trilinear functions of the eight vertices. */
+    std::array<double, 8>
+    hats(const dealii::Point<3> &x)
+    {
+      std::array<double, 8> result;
+      for (unsigned int v = 0; v < 8; ++v)
+        result[v] = (v % 2 ? x[0] : 1. - x[0]) * (v / 2 % 2 ? x[1] : 1. - x[1]) * (v / 4 ? x[2] : 1. - x[2]);
+      return result;
+    }
+
+
+    /** Triquadratic functions of the 27 nodes. */
+    std::array<double, 27>
+    quadratic_functions(const dealii::Point<3> &x)
+    {
+      std::array<double, 27> result;
+      double                 n[3][3];
+      for (unsigned int d = 0; d < 3; ++d)
+        {
+          n[d][0] = (1. - x[d]) * (1. - 2. * x[d]);
+          n[d][1] = 4. * x[d] * (1. - x[d]);
+          n[d][2] = x[d] * (2. * x[d] - 1.);
+        }
+      for (unsigned int a = 0; a < 27; ++a)
+        result[a] = n[0][a % 3] * n[1][a / 3 % 3] * n[2][a / 9];
+      return result;
+    }
+
+
+    /** The trilinear functions at the 27 nodes. */
+    const std::array<std::array<double, 8>, 27> &
+    hats_at_nodes()
+    {
+      static const auto result = [] {
+        std::array<std::array<double, 8>, 27> values;
+        for (unsigned int a = 0; a < 27; ++a)
+          values[a] = hats(dealii::Point<3>(0.5 * (a % 3), 0.5 * (a / 3 % 3), 0.5 * (a / 9)));
+        return values;
+      }();
+      return result;
+    }
+
+
+    /** Velocity at a node of a cell from a vector with its ghosts. */
+    Vector4
+    velocity_at(const NodeSpace &space, const unsigned int node, const double *const u)
+    {
+      if (space.is_free(node))
+        return Vector4(u + 3 * node);
+      Vector4 result;
+      for (const auto &[master, weight] : space.masters(node))
+        result += double(weight) * Vector4(u + 3 * master);
+      return result;
+    }
+
+
+    void
+    add_at(const NodeSpace &space, const unsigned int node, const Vector4 &value, double *const load)
+    {
+      if (space.is_free(node))
+        (Vector4(load + 3 * node) + value).store(load + 3 * node);
+      else
+        for (const auto &[master, weight] : space.masters(node))
+          (Vector4(load + 3 * master) + double(weight) * value).store(load + 3 * master);
+    }
+
+
+    double
+    sum_over_ranks(const double local, const MPI_Comm communicator)
+    {
+      return dealii::Utilities::MPI::sum(local, communicator);
+    }
+
+
+    /** Node of the vertex j. */
+    constexpr unsigned int
+    node_of_vertex(const unsigned int j)
+    {
+      return 2 * (j % 2) + 6 * (j / 2 % 2) + 18 * (j / 4);
+    }
+
+
+    TANKTREAD_INLINE Vector4
+    vector(const std::array<float, 4> &v)
+    {
+      return {v[0], v[1], v[2]};
+    }
+
+
+    /** f with zero in the fourth place. */
+    TANKTREAD_INLINE Vector4
+    tangential(const Vector4 &f)
+    {
+      return {f[0], f[1], f[2]};
+    }
+
+
+    /** Loads of the nodes, -a(psi, N_b) + (eta, div N_b), from forces at the vertices; h is the cell's size. */
+    TANKTREAD_CLONES void
+    node_loads(const std::array<std::array<float, 8>, 27>                &laplace,
+               const std::array<std::array<std::array<float, 4>, 8>, 27> &pressure,
+               const double                                               h,
+               const std::array<Vector4, 8>                              &f,
+               std::array<Vector4, 27>                                   &loads)
+    {
+      Vector4 f_t[8];
+      double  eta[8];
+      for (unsigned int v = 0; v < 8; ++v)
+        {
+          f_t[v] = -h * tangential(f[v]);
+          eta[v] = -h * h * f[v][3];
+        }
+      for (unsigned int b = 0; b < 27; ++b)
+        {
+          Vector4 sum;
+          for (unsigned int v = 0; v < 8; ++v)
+            {
+              sum += double(laplace[b][v]) * f_t[v];
+              sum += eta[v] * vector(pressure[b][v]);
+            }
+          loads[b] = sum;
+        }
+    }
+
+
+    /** The transpose: adds to what is dual to forces at the vertices. */
+    TANKTREAD_CLONES void
+    add_node_response(const std::array<std::array<float, 8>, 27>                &laplace,
+                      const std::array<std::array<std::array<float, 4>, 8>, 27> &pressure,
+                      const double                                               h,
+                      const std::array<Vector4, 27>                             &u,
+                      std::array<Vector4, 8>                                    &r)
+    {
+      Vector4 sums[8], products[8];
+      for (unsigned int b = 0; b < 27; ++b)
+        for (unsigned int v = 0; v < 8; ++v)
+          {
+            sums[v] += double(laplace[b][v]) * u[b];
+            products[v] += vector(pressure[b][v]).times(u[b]);
+          }
+      for (unsigned int v = 0; v < 8; ++v)
+        r[v] += -h * sums[v] + Vector4(0., 0., 0., -h * h * (products[v][0] + products[v][1] + products[v][2]));
+    }
+  } // namespace
+
+
+  JumpEnrichment::JumpEnrichment(const TaylorHoodSpace &space)
+    : space_(space)
+    , locator_(space.mesh)
+    , extension_(ScalarSpace(space.mesh, 1, false), 4)
+    , extension_values_(extension_.full_size())
+    , self_values_(extension_.full_size())
+    , pressure_values_(space.pressure->full_size())
+  {
+    const NodeSpace              &p = *space.pressure;
+    dealii::AlignedVector<double> ones(p.full_size());
+    std::fill(ones.begin(), ones.end(), 1.);
+    p.update(ones.data());
+    std::fill(pressure_values_.begin(), pressure_values_.end(), 0.);
+    add_pressure_mass(cubes(space), ones.data(), pressure_values_.data());
+    p.collect(pressure_values_.data());
+    pressure_integrals_.assign(pressure_values_.begin(), pressure_values_.begin() + p.n_owned());
+  }
+
+
+  void
+  JumpEnrichment::move(std::vector<QuadraticPatch> patches, const Eigen::VectorXd &area_weights, const PointInterpolation &points)
+  {
+    points_ = &points;
+    const SurfaceDistance distance(space_.mesh, std::move(patches));
+    group_points();
+    const auto &local = points.local_points();
+    hats_.resize(local.size());
+    normals_.resize(local.size());
+    psi_.assign(local.size(), {});
+    for (unsigned int i = 0; i < point_order_.size(); ++i)
+      {
+        const unsigned int    r      = point_order_[i];
+        const QuadraticPatch &patch  = distance.patches()[local[r]];
+        const Eigen::Vector3d normal = patch.a_1.cross(patch.a_2).normalized();
+        hats_[i]                     = hats(points.unit_positions()[r]);
+        normals_[i]                  = Vector4(normal.data());
+      }
+    find_cut_cells(distance);
+    set_weights(area_weights);
+  }
+
+
+  void
+  JumpEnrichment::group_points()
+  {
+    const auto &cells = points_->cells();
+    point_order_.resize(cells.size());
+    std::iota(point_order_.begin(), point_order_.end(), 0);
+    std::stable_sort(point_order_.begin(), point_order_.end(), [&](const unsigned int r, const unsigned int s) { return cells[r] < cells[s]; });
+    groups_.clear();
+    group_of_cell_.assign(space_.velocity->n_cells(), no_points);
+    for (unsigned int i = 0; i < point_order_.size(); ++i)
+      {
+        const unsigned int cell = cells[point_order_[i]];
+        if (groups_.empty() || groups_.back().cell != cell)
+          {
+            group_of_cell_[cell] = groups_.size();
+            groups_.push_back({cell, i, i});
+          }
+        ++groups_.back().end;
+      }
+  }
+
+
+  void
+  JumpEnrichment::find_cut_cells(const SurfaceDistance &distance)
+  {
+    const FluidMesh    &mesh = space_.mesh;
+    const double        h    = mesh.cell_size(mesh.finest_level());
+    std::vector<double> phi(space_.velocity->n_local(), std::nan(""));
+    cut_cells_.clear();
+    for (const Lattice &position : distance.cells_nearby())
+      {
+        dealii::Point<3> centre;
+        for (unsigned int d = 0; d < 3; ++d)
+          centre[d] = -0.5 * mesh.side() + h * (position[d] + 0.5);
+        if (std::abs(centre[2]) > 0.5 * mesh.side())
+          continue;
+        const int cell = locator_.locate(centre).cell;
+        if (cell < 0 || space_.velocity->cell_sizes()[cell] > 1.5 * h)
+          continue;
+        const unsigned int *const nodes    = space_.velocity->cell_nodes(cell);
+        unsigned int              n_inside = 0;
+        NodeDistances             distances;
+        for (int a = 0; a < 27; ++a)
+          {
+            double &value = phi[nodes[a]];
+            if (std::isnan(value) || nodes[a] + 1 == space_.velocity->n_local()) // the last place is that of all wall nodes
+              value = distance.at({2 * position[0] + a % 3, 2 * position[1] + a / 3 % 3, 2 * position[2] + a / 9});
+            distances.phi[a]    = value;
+            distances.inside[a] = value < 0.;
+            n_inside += distances.inside[a];
+          }
+        if (n_inside > 0 && n_inside < 27)
+          add_cut_cell(cell, distances);
+      }
+  }
+
+
+  void
+  JumpEnrichment::add_cut_cell(const unsigned int cell, const NodeDistances &nodes)
+  {
+    const PartialCellMatrices &whole = whole_cell_matrices();
+    std::array<double, 27>     scaled;
+    for (unsigned int a = 0; a < 27; ++a)
+      scaled[a] = nodes.phi[a] / space_.velocity->cell_sizes()[cell];
+    const PartialCellMatrices in = inside_matrices(scaled);
+
+    // From forces at the vertices to amplitudes at the nodes.
+    std::array<std::array<double, 8>, 27> q;
+    for (unsigned int a = 0; a < 27; ++a)
+      for (unsigned int v = 0; v < 8; ++v)
+        q[a][v] = nodes.phi[a] * hats_at_nodes()[a][v];
+
+    CutCell cut = {};
+    cut.cell    = cell;
+    cut.group   = group_of_cell_[cell];
+    // chi - i_a is chi for a node outside and minus the indicator of the outside for one inside.
+    std::array<std::array<double, 8>, 27> same_side = {};
+    for (unsigned int b = 0; b < 27; ++b)
+      {
+        std::array<double, 8> row = {}, row_same = {};
+        for (unsigned int a = 0; a < 27; ++a)
+          {
+            const double entry = nodes.inside[a] ? double(in.laplace[b][a]) - whole.laplace[b][a] : in.laplace[b][a];
+            for (unsigned int v = 0; v < 8; ++v)
+              row[v] += entry * q[a][v];
+            if (nodes.inside[a] == nodes.inside[b])
+              for (unsigned int v = 0; v < 8; ++v)
+                row_same[v] += (nodes.inside[a] ? -entry : entry) * q[a][v];
+          }
+        for (unsigned int v = 0; v < 8; ++v)
+          cut.laplace[b][v] = row[v];
+        same_side[b] = row_same;
+      }
+    for (unsigned int v = 0; v < 8; ++v)
+      for (unsigned int w = 0; w < 8; ++w)
+        {
+          double sum = 0.;
+          for (unsigned int b = 0; b < 27; ++b)
+            sum += q[b][v] * same_side[b][w];
+          cut.self[v][w] = sum;
+        }
+    for (unsigned int v = 0; v < 8; ++v)
+      for (unsigned int w = 0; w < v; ++w)
+        cut.self[v][w] = cut.self[w][v];
+
+    for (unsigned int j = 0; j < 8; ++j)
+      {
+        const bool vertex_inside = nodes.inside[node_of_vertex(j)];
+        for (unsigned int c = 0; c < 3; ++c)
+          {
+            std::array<double, 8> row = {}, row_same = {};
+            for (unsigned int a = 0; a < 27; ++a)
+              {
+                const double inside = in.divergence[j][27 * c + a], all = whole.divergence[j][27 * c + a];
+                const double entry    = nodes.inside[a] ? inside - all : inside;
+                cut.pressure[a][j][c] = vertex_inside ? inside - all : inside;
+                for (unsigned int v = 0; v < 8; ++v)
+                  row[v] += entry * q[a][v];
+                if (nodes.inside[a] == vertex_inside)
+                  for (unsigned int v = 0; v < 8; ++v)
+                    row_same[v] += (vertex_inside ? -entry : entry) * q[a][v];
+              }
+            for (unsigned int v = 0; v < 8; ++v)
+              {
+                cut.divergence[j][v][c] = row[v];
+                cut.self_mixed[v][j][c] = row_same[v];
+              }
+          }
+      }
+    if (cut.group != no_points)
+      for (unsigned int i = groups_[cut.group].begin; i < groups_[cut.group].end; ++i)
+        {
+          // On the shell psi is minus the sum over the nodes inside of q_a N_a.
+          const auto N = quadratic_functions(points_->unit_positions()[point_order_[i]]);
+          for (unsigned int a = 0; a < 27; ++a)
+            if (nodes.inside[a])
+              for (unsigned int v = 0; v < 8; ++v)
+                psi_[i][v] -= N[a] * q[a][v];
+        }
+    cut_cells_.push_back(cut);
+  }
+
+
+  void
+  JumpEnrichment::set_weights(const Eigen::VectorXd &area_weights)
+  {
+    std::fill(extension_values_.begin(), extension_values_.end(), 0.);
+    const auto &local = points_->local_points();
+    for (const PointGroup &group : groups_)
+      {
+        const unsigned int *const vertices = extension_.cell_nodes(group.cell);
+        for (unsigned int i = group.begin; i < group.end; ++i)
+          for (unsigned int v = 0; v < 8; ++v)
+            extension_values_[4 * vertices[v]] += hats_[i][v] * area_weights[local[point_order_[i]]];
+      }
+    extension_.collect(extension_values_.data());
+    inverse_weights_.resize(extension_.n_owned());
+    // Vertices of cut cells that see no point belong to corners that are barely cut: nothing is extended to them.
+    for (unsigned int i = 0; i < extension_.n_owned(); ++i)
+      inverse_weights_[i] = extension_values_[4 * i] > 1e-14 ? 1. / extension_values_[4 * i] : 0.;
+  }
+
+
+  JumpEnrichment::VertexForces
+  JumpEnrichment::vertex_values(const dealii::AlignedVector<double> &values, const unsigned int cell) const
+  {
+    const unsigned int *const vertices = extension_.cell_nodes(cell);
+    VertexForces              result;
+    for (unsigned int v = 0; v < 8; ++v)
+      {
+        const double *const value = &values[4 * vertices[v]];
+        result[v]                 = {value[0], value[1], value[2], value[3]};
+      }
+    return result;
+  }
+
+
+  void
+  JumpEnrichment::add_vertex_values(const unsigned int cell, const VertexForces &values) const
+  {
+    const unsigned int *const vertices = extension_.cell_nodes(cell);
+    for (unsigned int v = 0; v < 8; ++v)
+      {
+        double *const value = &extension_values_[4 * vertices[v]];
+        for (unsigned int c = 0; c < 4; ++c)
+          value[c] += values[v][c];
+      }
+  }
+
+
+  void
+  JumpEnrichment::average() const
+  {
+    extension_.collect(extension_values_.data());
+    for (std::size_t i = 0; i < extension_.n_owned(); ++i)
+      for (unsigned int c = 0; c < 4; ++c)
+        extension_values_[4 * i + c] *= inverse_weights_[i];
+    extension_.update(extension_values_.data());
+  }
+
+
+  void
+  JumpEnrichment::extend(const std::vector<double> &forces) const
+  {
+    std::fill(extension_values_.begin(), extension_values_.end(), 0.);
+    for (const PointGroup &group : groups_)
+      {
+        VertexForces sums;
+        for (unsigned int i = group.begin; i < group.end; ++i)
+          {
+            const Vector4 f(&forces[3 * point_order_[i]]), n = normals_[i];
+            const double  f_n  = f[0] * n[0] + f[1] * n[1] + f[2] * n[2];
+            const Vector4 both = f + -f_n * n + Vector4(0., 0., 0., f_n);
+            for (unsigned int v = 0; v < 8; ++v)
+              sums[v] += hats_[i][v] * both;
+          }
+        add_vertex_values(group.cell, sums);
+      }
+    average();
+  }
+
+
+  void
+  JumpEnrichment::add_load(const std::vector<double> &forces, FluidBlockVector &load) const
+  {
+    extend(forces);
+    const NodeSpace        &u_space = *space_.velocity, &p_space = *space_.pressure;
+    double *const           load_u = load.block(velocity_block).begin();
+    std::array<Vector4, 27> loads;
+    std::fill(pressure_values_.begin(), pressure_values_.end(), 0.);
+    for (const CutCell &cut : cut_cells_)
+      {
+        const double              h       = u_space.cell_sizes()[cut.cell];
+        const VertexForces        f       = vertex_values(extension_values_, cut.cell);
+        const unsigned int *const nodes   = u_space.cell_nodes(cut.cell);
+        const unsigned int *const p_nodes = p_space.cell_nodes(cut.cell);
+        node_loads(cut.laplace, cut.pressure, h, f, loads);
+        for (unsigned int b = 0; b < 27; ++b)
+          add_at(u_space, nodes[b], loads[b], load_u);
+        for (unsigned int j = 0; j < 8; ++j)
+          {
+            Vector4 sum;
+            for (unsigned int v = 0; v < 8; ++v)
+              sum += vector(cut.divergence[j][v]).times(f[v]);
+            pressure_values_[p_nodes[j]] += h * h * (sum[0] + sum[1] + sum[2]);
+          }
+      }
+    load.block(velocity_block).compress(dealii::VectorOperation::add);
+    p_space.collect(pressure_values_.data());
+    const double excess =
+      sum_over_ranks(std::accumulate(pressure_values_.begin(), pressure_values_.begin() + p_space.n_owned(), 0.), space_.mesh.communicator());
+    for (unsigned int i = 0; i < p_space.n_owned(); ++i)
+      pressure_values_[i] -= excess / std::pow(space_.mesh.side(), 3) * pressure_integrals_[i];
+    p_space.store(pressure_values_.data(), load.block(pressure_block), true);
+  }
+
+
+  void
+  JumpEnrichment::add_self_response(const CutCell &cut, const VertexForces &f, const std::vector<double> &forces, VertexForces &r, std::vector<double> &values)
+    const
+  {
+    const double h = space_.velocity->cell_sizes()[cut.cell];
+    if (cut.group != no_points)
+      for (unsigned int i = groups_[cut.group].begin; i < groups_[cut.group].end; ++i)
+        {
+          const unsigned int point = point_order_[i];
+          const Vector4      force(&forces[3 * point]);
+          Vector4            value(&values[3 * point]);
+          for (unsigned int v = 0; v < 8; ++v)
+            {
+              value += psi_[i][v] * f[v];
+              r[v] += psi_[i][v] * force;
+            }
+          value.store(&values[3 * point]);
+        }
+    for (unsigned int v = 0; v < 8; ++v)
+      {
+        Vector4 sum;
+        for (unsigned int w = 0; w < 8; ++w)
+          sum += -h * cut.self[v][w] * tangential(f[w]) + -h * h * f[w][3] * vector(cut.self_mixed[v][w]);
+        r[v] += sum;
+        for (unsigned int j = 0; j < 8; ++j)
+          {
+            const Vector4 product = vector(cut.self_mixed[v][j]).times(f[v]);
+            r[j] += Vector4(0., 0., 0., -h * h * (product[0] + product[1] + product[2]));
+          }
+      }
+  }
+
+
+  void
+  JumpEnrichment::add_field_response(const CutCell &cut, const double *const u, const double *const p, VertexForces &r) const
+  {
+    const double              h       = space_.velocity->cell_sizes()[cut.cell];
+    const unsigned int *const nodes   = space_.velocity->cell_nodes(cut.cell);
+    const unsigned int *const p_nodes = space_.pressure->cell_nodes(cut.cell);
+    std::array<Vector4, 27>   local;
+    for (unsigned int b = 0; b < 27; ++b)
+      local[b] = velocity_at(*space_.velocity, nodes[b], u);
+    add_node_response(cut.laplace, cut.pressure, h, local, r);
+    for (unsigned int j = 0; j < 8; ++j)
+      for (unsigned int v = 0; v < 8; ++v)
+        r[v] += (h * h * p[p_nodes[j]]) * vector(cut.divergence[j][v]);
+  }
+
+
+  void
+  JumpEnrichment::load_pressure(const FluidBlockVector &fields) const
+  {
+    const NodeSpace &space = *space_.pressure;
+    space.load(fields.block(pressure_block), pressure_values_.data());
+    double mean = std::inner_product(pressure_integrals_.begin(), pressure_integrals_.end(), pressure_values_.begin(), 0.);
+    mean        = sum_over_ranks(mean, space_.mesh.communicator()) / std::pow(space_.mesh.side(), 3);
+    for (unsigned int i = 0; i < space.n_owned(); ++i)
+      pressure_values_[i] -= mean;
+    space.update(pressure_values_.data());
+  }
+
+
+  void
+  JumpEnrichment::add_velocities(const FluidBlockVector &fields, const std::vector<double> *const forces, std::vector<double> &values) const
+  {
+    if (forces != nullptr)
+      {
+        extend(*forces);
+        std::copy(extension_values_.begin(), extension_values_.end(), self_values_.begin());
+      }
+    load_pressure(fields);
+    const FluidVector &u = fields.block(velocity_block);
+    u.update_ghost_values();
+    std::fill(extension_values_.begin(), extension_values_.end(), 0.);
+    for (const CutCell &cut : cut_cells_)
+      {
+        VertexForces r;
+        add_field_response(cut, u.begin(), pressure_values_.data(), r);
+        if (forces != nullptr)
+          add_self_response(cut, vertex_values(self_values_, cut.cell), *forces, r, values);
+        add_vertex_values(cut.cell, r);
+      }
+    u.zero_out_ghost_values();
+    average();
+    for (const PointGroup &group : groups_)
+      {
+        const VertexForces r = vertex_values(extension_values_, group.cell);
+        for (unsigned int i = group.begin; i < group.end; ++i)
+          {
+            Vector4 both;
+            for (unsigned int v = 0; v < 8; ++v)
+              both += hats_[i][v] * r[v];
+            const Vector4 n      = normals_[i];
+            const double  factor = both[3] - (both[0] * n[0] + both[1] * n[1] + both[2] * n[2]);
+            double *const value  = &values[3 * point_order_[i]];
+            (Vector4(value) + both + factor * n).store(value);
+          }
+      }
+  }
+} // namespace tanktread
