@@ -245,8 +245,9 @@ namespace tanktread
   NewtonSolver::follow_shell(const State &state, unsigned int &n_moves)
   {
     // A node of the fluid that changes sides changes the residual by a jump: after a few moves positions within a small part of a cell are as good as any.
-    constexpr unsigned int max_moves = 4;
-    const double           tolerance = 0.002 * finest_cell();
+    // That part shrinks with the tolerance of the solver.
+    constexpr unsigned int max_moves = 12;
+    const double           tolerance = std::min(0.002 * finest_cell(), 100. * parameters_.newton_tolerance);
     const bool             moves     = trial_points() == Points::stay && n_moves < max_moves && coupling_.distance(state.x) > tolerance;
     if (moves)
       {
