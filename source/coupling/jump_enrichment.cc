@@ -3,20 +3,13 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <tanktread/base/target_clones.h>
 #include <tanktread/coupling/jump_enrichment.h>
 #include <tanktread/fluid/stokes_operator.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-
-// Compiled for several instruction sets, the best of which is chosen when the program starts.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#  define TANKTREAD_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#  define TANKTREAD_CLONES
-#endif
-#define TANKTREAD_INLINE [[gnu::always_inline]] inline
 
 namespace tanktread
 {
@@ -89,13 +82,6 @@ namespace tanktread
     }
 
 
-    double
-    sum_over_ranks(const double local, const MPI_Comm communicator)
-    {
-      return dealii::Utilities::MPI::sum(local, communicator);
-    }
-
-
     /** Node of the vertex j. */
     constexpr unsigned int
     node_of_vertex(const unsigned int j)
@@ -104,7 +90,7 @@ namespace tanktread
     }
 
 
-    TANKTREAD_INLINE Vector4
+    inline Vector4
     vector(const std::array<float, 4> &v)
     {
       return {v[0], v[1], v[2]};
@@ -112,7 +98,7 @@ namespace tanktread
 
 
     /** f with zero in the fourth place. */
-    TANKTREAD_INLINE Vector4
+    inline Vector4
     tangential(const Vector4 &f)
     {
       return {f[0], f[1], f[2]};
@@ -460,7 +446,7 @@ namespace tanktread
     load.block(velocity_block).compress(dealii::VectorOperation::add);
     p_space.collect(pressure_values_.data());
     const double excess =
-      sum_over_ranks(std::accumulate(pressure_values_.begin(), pressure_values_.begin() + p_space.n_owned(), 0.), space_.mesh.communicator());
+      dealii::Utilities::MPI::sum(std::accumulate(pressure_values_.begin(), pressure_values_.begin() + p_space.n_owned(), 0.), space_.mesh.communicator());
     for (unsigned int i = 0; i < p_space.n_owned(); ++i)
       pressure_values_[i] -= excess / std::pow(space_.mesh.side(), 3) * pressure_integrals_[i];
     p_space.store(pressure_values_.data(), load.block(pressure_block), true);
@@ -522,7 +508,7 @@ namespace tanktread
     const NodeSpace &space = *space_.pressure;
     space.load(fields.block(pressure_block), pressure_values_.data());
     double mean = std::inner_product(pressure_integrals_.begin(), pressure_integrals_.end(), pressure_values_.begin(), 0.);
-    mean        = sum_over_ranks(mean, space_.mesh.communicator()) / std::pow(space_.mesh.side(), 3);
+    mean        = dealii::Utilities::MPI::sum(mean, space_.mesh.communicator()) / std::pow(space_.mesh.side(), 3);
     for (unsigned int i = 0; i < space.n_owned(); ++i)
       pressure_values_[i] -= mean;
     space.update(pressure_values_.data());

@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: the vectors that flexible GMRES keeps.
 
+#include <tanktread/base/target_clones.h>
 #include <tanktread/fluid/krylov_basis.h>
 
 #include <algorithm>
 #include <cmath>
-
-// Compiled for several instruction sets, the best of which is chosen when the program starts.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#  define TANKTREAD_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#  define TANKTREAD_CLONES
-#endif
 
 namespace tanktread
 {

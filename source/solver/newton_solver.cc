@@ -242,18 +242,14 @@ namespace tanktread
 
 
   bool
-  NewtonSolver::follow_shell(const State &state, unsigned int &n_moves)
+  NewtonSolver::follow_shell(const State &state)
   {
-    // A node of the fluid that changes sides changes the residual by a jump: after a few moves positions within a small part of a cell are as good as any.
-    // That part shrinks with the tolerance of the solver.
-    constexpr unsigned int max_moves = 12;
-    const double           tolerance = std::min(0.002 * finest_cell(), 100. * parameters_.newton_tolerance);
-    const bool             moves     = trial_points() == Points::stay && n_moves < max_moves && coupling_.distance(state.x) > tolerance;
+    // A node of the fluid that changes sides changes the residual by a jump: positions within a small part of a cell, which shrinks with the solver's tolerance, are
+    // as good as any.
+    const double tolerance = std::min(0.002 * finest_cell(), 100. * parameters_.newton_tolerance);
+    const bool   moves     = trial_points() == Points::stay && coupling_.distance(state.x) > tolerance;
     if (moves)
-      {
-        coupling_.move(state.x, volume_gradient(surface_, state.x));
-        ++n_moves;
-      }
+      coupling_.move(state.x, volume_gradient(surface_, state.x));
     return moves;
   }
 
@@ -273,10 +269,9 @@ namespace tanktread
     State        trial = state;
     try
       {
-        Residual     r        = residual(trial, xhat, tau, Points::follow);
-        double       length   = dealii::Utilities::MPI::broadcast(fluid_->mesh().communicator(), tau * speed(r, tau), 0); // about that of the next displacement
-        bool         cautious = false;
-        unsigned int n_moves  = 1;
+        Residual r        = residual(trial, xhat, tau, Points::follow);
+        double   length   = dealii::Utilities::MPI::broadcast(fluid_->mesh().communicator(), tau * speed(r, tau), 0); // about that of the next displacement
+        bool     cautious = false;
         for (bool solved = false; !solved;)
           {
             if (report.newton_iterations == parameters_.max_newton_iterations)
@@ -308,7 +303,7 @@ namespace tanktread
                   throw NumericalError(failure);
                 cautious = tangent_ == Tangent::positive;
               }
-            if (follow_shell(trial, n_moves))
+            if (follow_shell(trial))
               {
                 r                       = residual(trial, xhat, tau, Points::stay);
                 report.residuals.back() = norm(r, tau);

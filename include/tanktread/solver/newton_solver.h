@@ -110,9 +110,9 @@ namespace tanktread
     /** What line search does with the points: those of the enriched interface stay, at fixed positions J is the transpose of R and the linear system their exact derivative. */
     Points
     trial_points() const;
-    /** With the enriched interface: moves the points after the shell where that matters, and if they have not been moved too often in this step. Returns true if they moved. */
+    /** With the enriched interface: moves the points after the shell unless they are close enough, so that no solution is accepted with points elsewhere. Returns true if they moved. */
     bool
-    follow_shell(const State &state, unsigned int &n_moves);
+    follow_shell(const State &state);
     /** Part of the norm that needs no linearisation. */
     double
     speed(const Residual &r, double tau) const;
