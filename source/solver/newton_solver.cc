@@ -242,14 +242,18 @@ namespace tanktread
 
 
   bool
-  NewtonSolver::follow_shell(const State &state)
+  NewtonSolver::follow_shell(const State &state, unsigned int &n_moves)
   {
-    // A node of the fluid that changes sides changes the residual by a jump: positions within a small part of a cell, which shrinks with the solver's tolerance, are
-    // as good as any.
-    const double tolerance = std::min(0.002 * finest_cell(), 100. * parameters_.newton_tolerance);
-    const bool   moves     = trial_points() == Points::stay && coupling_.distance(state.x) > tolerance;
+    // Positions within a small part of a cell, which shrinks with the solver's tolerance, are as good as any. A node of the fluid that changes sides makes the residual jump, and now and
+    // then shell and node would chase each other for ever: then a larger part has to do.
+    constexpr unsigned int patience  = 8;
+    const double           tolerance = n_moves < patience ? std::min(0.002 * finest_cell(), 100. * parameters_.newton_tolerance) : 0.02 * finest_cell();
+    const bool             moves     = trial_points() == Points::stay && coupling_.distance(state.x) > tolerance;
     if (moves)
-      coupling_.move(state.x, volume_gradient(surface_, state.x));
+      {
+        coupling_.move(state.x, volume_gradient(surface_, state.x));
+        ++n_moves;
+      }
     return moves;
   }
 
@@ -269,9 +273,10 @@ namespace tanktread
     State        trial = state;
     try
       {
-        Residual r        = residual(trial, xhat, tau, Points::follow);
-        double   length   = dealii::Utilities::MPI::broadcast(fluid_->mesh().communicator(), tau * speed(r, tau), 0); // about that of the next displacement
-        bool     cautious = false;
+        Residual     r        = residual(trial, xhat, tau, Points::follow);
+        double       length   = dealii::Utilities::MPI::broadcast(fluid_->mesh().communicator(), tau * speed(r, tau), 0); // about that of the next displacement
+        bool         cautious = false;
+        unsigned int n_moves  = 1;
         for (bool solved = false; !solved;)
           {
             if (report.newton_iterations == parameters_.max_newton_iterations)
@@ -303,7 +308,7 @@ namespace tanktread
                   throw NumericalError(failure);
                 cautious = tangent_ == Tangent::positive;
               }
-            if (follow_shell(trial))
+            if (follow_shell(trial, n_moves))
               {
                 r                       = residual(trial, xhat, tau, Points::stay);
                 report.residuals.back() = norm(r, tau);

@@ -112,7 +112,7 @@ namespace tanktread
     trial_points() const;
     /** With the enriched interface: moves the points after the shell unless they are close enough, so that no solution is accepted with points elsewhere. Returns true if they moved. */
     bool
-    follow_shell(const State &state);
+    follow_shell(const State &state, unsigned int &n_moves);
     /** Part of the norm that needs no linearisation. */
     double
     speed(const Residual &r, double tau) const;
