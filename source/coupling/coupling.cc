@@ -240,6 +240,17 @@ namespace tanktread
 
 
   void
+  Coupling::carry_pressure(const ControlPoints &f, VertexSides &sides, FluidBlockVector &fields) const
+  {
+    if (interface_ == Interface::plain)
+      return;
+    set_point_forces(density(f), enriched_forces_);
+    project(f);
+    enrichment_->carry_pressure(enriched_forces_, sides, fields);
+  }
+
+
+  void
   Coupling::project(const ControlPoints &f) const
   {
     const double factor = normal_field_.cwiseProduct(f).sum() / normal_field_.cwiseProduct(volume_gradient_).sum();

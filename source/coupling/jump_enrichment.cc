@@ -225,6 +225,7 @@ namespace tanktread
     const double        h    = mesh.cell_size(mesh.finest_level());
     std::vector<double> phi(space_.velocity->n_local(), std::nan(""));
     cut_cells_.clear();
+    nearby_cells_.clear();
     for (const Lattice &position : distance.cells_nearby())
       {
         dealii::Point<3> centre;
@@ -247,9 +248,51 @@ namespace tanktread
             distances.inside[a] = value < 0.;
             n_inside += distances.inside[a];
           }
+        nearby_cells_.push_back(cell);
         if (n_inside > 0 && n_inside < 27)
           add_cut_cell(cell, distances);
       }
+    set_sides(phi);
+  }
+
+
+  void
+  JumpEnrichment::set_sides(const std::vector<double> &phi)
+  {
+    const NodeSpace &space = *space_.pressure;
+    std::fill(pressure_values_.begin(), pressure_values_.end(), 0.);
+    for (const unsigned int cell : nearby_cells_)
+      for (unsigned int j = 0; j < 8; ++j)
+        pressure_values_[space.cell_nodes(cell)[j]] = phi[space_.velocity->cell_nodes(cell)[node_of_vertex(j)]] < 0. ? -1. : 1.;
+    space.collect(pressure_values_.data()); // several ranks may know
+    sides_.resize(space.n_owned());
+    for (unsigned int i = 0; i < space.n_owned(); ++i)
+      sides_[i] = (pressure_values_[i] > 0.) - (pressure_values_[i] < 0.);
+  }
+
+
+  void
+  JumpEnrichment::carry_pressure(const std::vector<double> &forces, VertexSides &sides, FluidBlockVector &fields) const
+  {
+    const NodeSpace &space = *space_.pressure;
+    extend(forces);
+    std::vector<double> known(space.n_owned()), f_n(space.n_owned());
+    for (const bool counting : {true, false})
+      {
+        std::fill(pressure_values_.begin(), pressure_values_.end(), 0.);
+        for (const unsigned int cell : nearby_cells_)
+          for (unsigned int j = 0; j < 8; ++j)
+            pressure_values_[space.cell_nodes(cell)[j]] = counting ? 1. : extension_values_[4 * extension_.cell_nodes(cell)[j] + 3];
+        space.collect(pressure_values_.data());
+        std::copy_n(pressure_values_.begin(), space.n_owned(), counting ? known.begin() : f_n.begin());
+      }
+    std::fill(pressure_values_.begin(), pressure_values_.end(), 0.);
+    if (!sides.empty())
+      for (unsigned int i = 0; i < space.n_owned(); ++i)
+        if (sides[i] * sides_[i] < 0)
+          pressure_values_[i] = sides_[i] * f_n[i] / known[i];
+    space.store(pressure_values_.data(), fields.block(pressure_block), true);
+    sides = sides_;
   }
 
 

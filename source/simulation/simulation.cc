@@ -106,6 +106,7 @@ namespace tanktread
     solver_.attach(fluid_);
     stepper_.forget_flow();
     fluid_.space().reinit(state_.fluid);
+    state_.sides.clear();
   }
 
 

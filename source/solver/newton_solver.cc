@@ -57,7 +57,7 @@ namespace tanktread
 
 
   Residual
-  NewtonSolver::residual(const State &state, const ControlPoints &xhat, const double tau, const Points points)
+  NewtonSolver::residual(State &state, const ControlPoints &xhat, const double tau, const Points points)
   {
     const Timings::Scope scope(timings_, "Residual");
     Residual             r;
@@ -65,7 +65,7 @@ namespace tanktread
     r.volume              = enclosed_volume(surface_, state.x) - volume_;
     const ControlPoints v = volume_gradient(surface_, state.x);
     if (points == Points::follow)
-      coupling_.move(state.x, v);
+      move_points(state);
 
     fluid_->space().reinit(r.fluid);
     fluid_->stokes().vmult(r.fluid, state.fluid);
@@ -75,6 +75,21 @@ namespace tanktread
     r.flux        = v.cwiseProduct(velocity).sum();
     r.x           = state.x - xhat - tau * velocity - state.volume_shift * coupling_.density(v);
     return r;
+  }
+
+
+  void
+  NewtonSolver::move_points(State &state)
+  {
+    coupling_.move(state.x, volume_gradient(surface_, state.x));
+    carry_pressure(state);
+  }
+
+
+  void
+  NewtonSolver::carry_pressure(State &state) const
+  {
+    coupling_.carry_pressure(state.force, state.sides, state.fluid);
   }
 
 
@@ -242,7 +257,7 @@ namespace tanktread
 
 
   bool
-  NewtonSolver::follow_shell(const State &state, unsigned int &n_moves)
+  NewtonSolver::follow_shell(State &state, unsigned int &n_moves)
   {
     // Positions within a small part of a cell, which shrinks with the solver's tolerance, are as good as any. A node of the fluid that changes sides makes the residual jump, and now and
     // then shell and node would chase each other for ever: then a larger part has to do.
@@ -251,7 +266,7 @@ namespace tanktread
     const bool             moves     = trial_points() == Points::stay && coupling_.distance(state.x) > tolerance;
     if (moves)
       {
-        coupling_.move(state.x, volume_gradient(surface_, state.x));
+        move_points(state);
         ++n_moves;
       }
     return moves;
@@ -282,7 +297,7 @@ namespace tanktread
             if (report.newton_iterations == parameters_.max_newton_iterations)
               throw NumericalError("no convergence in " + std::to_string(report.newton_iterations) + " Newton iterations");
             if (trial_points() == Points::follow && !report.step_lengths.empty() && report.step_lengths.back() < 1.)
-              coupling_.move(trial.x, volume_gradient(surface_, trial.x)); // where a rejected trial has left it
+              move_points(trial); // where a rejected trial has left it
             const bool near = length < 0.25 * finest_cell();
             if (near && !cautious && tangent_ == Tangent::positive)
               use(Tangent::exact);

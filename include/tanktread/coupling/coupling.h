@@ -89,6 +89,13 @@ namespace tanktread
     ControlPoints
     density(const ControlPoints &f) const;
 
+    /**
+     * Adds to the pressure of `fields` what it jumps where the shell with nodal forces f has passed a vertex of the mesh since `sides`, which becomes the sides at move(). Nothing if `sides` is empty, and with the plain
+     * interface. Collective.
+     */
+    void
+    carry_pressure(const ControlPoints &f, VertexSides &sides, FluidBlockVector &fields) const;
+
     Interface
     interface() const
     {

@@ -11,6 +11,9 @@
 
 namespace tanktread
 {
+  /** On which side of the shell the pressure's owned unknowns lie: -1 inside, 1 outside, 0 where that is not known, farther from the shell than a cell. Empty: nowhere. */
+  using VertexSides = std::vector<signed char>;
+
   /**
    * Forces f per area on the shell bend the velocity, mu [du/dn] = -f_t, and break the pressure, [p] = f_n (outside minus inside), inside cells that finite elements cannot follow. So velocity and
    * pressure are sought as u_h + psi, p_h + eta with
@@ -48,6 +51,20 @@ namespace tanktread
     /** values += (R^T fields without the values of u_h) + Q forces at the local points, the latter unless null. Collective. */
     void
     add_velocities(const FluidBlockVector &fields, const std::vector<double> *forces, std::vector<double> &values) const;
+
+    /** Sides since move(). */
+    const VertexSides &
+    sides() const
+    {
+      return sides_;
+    }
+
+    /**
+     * Adds to p_h at the vertices that have changed sides since `sides` what the pressure jumps there, (i_new - i_old) eta_j: the nodal values of p_h are those of the pressure, which a vertex that
+     * the shell has passed finds on the other side. Afterwards `sides` is sides(). @param forces as for add_load(). Collective.
+     */
+    void
+    carry_pressure(const std::vector<double> &forces, VertexSides &sides, FluidBlockVector &fields) const;
 
     unsigned int
     n_cut_cells() const
@@ -89,6 +106,8 @@ namespace tanktread
     void
     find_cut_cells(const SurfaceDistance &distance);
     void
+    set_sides(const std::vector<double> &phi);
+    void
     add_cut_cell(unsigned int cell, const NodeDistances &nodes);
     void
     set_weights(const Eigen::VectorXd &area_weights);
@@ -118,6 +137,8 @@ namespace tanktread
     std::vector<double>                   pressure_integrals_; // of the pressure functions, owned ones
     const PointInterpolation             *points_ = nullptr;
     std::vector<CutCell>                  cut_cells_;
+    std::vector<unsigned int>             nearby_cells_; // whose nodes' distances are known
+    VertexSides                           sides_;
     std::vector<PointGroup>               groups_; // by cell, ascending
     std::vector<unsigned int>             group_of_cell_;
     std::vector<unsigned int>             point_order_;
