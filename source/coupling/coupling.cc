@@ -144,6 +144,20 @@ namespace tanktread
   }
 
 
+  void
+  Coupling::extend(const ControlPoints &f, ExtendedForces &forces) const
+  {
+    if (interface_ == Interface::plain)
+      return;
+    mass_inverse_.solve(f, density_);
+    set_point_forces(density_, forces.at_points);
+    const double factor = normal_field_.cwiseProduct(f).sum() / normal_field_.cwiseProduct(volume_gradient_).sum();
+    for (std::size_t i = 0; i < normal_forces_.size(); ++i)
+      forces.at_points[i] -= factor * normal_forces_[i];
+    enrichment_->extend(forces);
+  }
+
+
   ControlPoints
   Coupling::velocity_moments(const FluidBlockVector &fields) const
   {
@@ -152,26 +166,21 @@ namespace tanktread
 
 
   ControlPoints
-  Coupling::velocity_moments(const FluidBlockVector &fields, const ControlPoints &f) const
+  Coupling::velocity_moments(const FluidBlockVector &fields, const ExtendedForces &f) const
   {
     return all_moments(fields, &f);
   }
 
 
   ControlPoints
-  Coupling::all_moments(const FluidBlockVector &fields, const ControlPoints *const f) const
+  Coupling::all_moments(const FluidBlockVector &fields, const ExtendedForces *const f) const
   {
     interpolation_->values(fields, values_);
     if (interface_ == Interface::plain)
       return sum_moments(values_);
 
     enriched_values_.assign(values_.size(), 0.);
-    if (f != nullptr)
-      {
-        set_point_forces(density(*f), enriched_forces_);
-        project(*f);
-      }
-    enrichment_->add_velocities(fields, f != nullptr ? &enriched_forces_ : nullptr, enriched_values_);
+    enrichment_->add_velocities(fields, f, enriched_values_);
     // The transpose of P takes the multiple of v away that makes the further moments orthogonal to m = M^{-1} v.
     double flux = 0.;
     for (std::size_t i = 0; i < values_.size(); ++i)
@@ -220,6 +229,15 @@ namespace tanktread
   ControlPoints
   Coupling::interpolate(const FluidBlockVector &fields, const ControlPoints &f) const
   {
+    ExtendedForces forces;
+    extend(f, forces);
+    return interpolate(fields, forces);
+  }
+
+
+  ControlPoints
+  Coupling::interpolate(const FluidBlockVector &fields, const ExtendedForces &f) const
+  {
     return density(velocity_moments(fields, f));
   }
 
@@ -244,18 +262,9 @@ namespace tanktread
   {
     if (interface_ == Interface::plain)
       return;
-    set_point_forces(density(f), enriched_forces_);
-    project(f);
-    enrichment_->carry_pressure(enriched_forces_, sides, fields);
-  }
-
-
-  void
-  Coupling::project(const ControlPoints &f) const
-  {
-    const double factor = normal_field_.cwiseProduct(f).sum() / normal_field_.cwiseProduct(volume_gradient_).sum();
-    for (std::size_t i = 0; i < enriched_forces_.size(); ++i)
-      enriched_forces_[i] -= factor * normal_forces_[i];
+    ExtendedForces forces;
+    extend(f, forces);
+    enrichment_->carry_pressure(forces, sides, fields);
   }
 
 
@@ -288,12 +297,18 @@ namespace tanktread
   void
   Coupling::spread(const ControlPoints &f, FluidBlockVector &load) const
   {
-    spread_plainly(f, load);
-    if (interface_ == Interface::plain)
-      return;
-    enriched_forces_ = values_;
-    project(f);
-    enrichment_->add_load(enriched_forces_, load);
+    ExtendedForces forces;
+    extend(f, forces);
+    spread(1., f, forces, load);
+  }
+
+
+  void
+  Coupling::spread(const double factor, const ControlPoints &f, const ExtendedForces &forces, FluidBlockVector &load) const
+  {
+    spread_plainly(factor * f, load);
+    if (interface_ == Interface::enriched)
+      enrichment_->add_load(forces, factor, load);
   }
 
 
@@ -374,14 +389,18 @@ namespace tanktread
   }
 
 
-  unsigned int
-  coupling_subdivisions(const TriangleMesh &topology, const ControlPoints &x, const unsigned int points_per_face, const double h)
+  TriangleQuadrature
+  coupling_quadrature(const TriangleMesh &topology, const ControlPoints &x, const Interface interface, const double h)
   {
-    const SubdivisionSurface surface(topology, triangle_quadrature(points_per_face), Derivatives::first);
-    const double             largest = area_weights(surface, x).maxCoeff();
-    unsigned int             result  = 0;
-    for (double area = largest; area > 0.25 * h * h; area *= 0.25)
-      ++result;
-    return result;
+    const SubdivisionSurface surface(topology, triangle_quadrature(1), Derivatives::first);
+    const double             spacing = interface == Interface::enriched ? 0.3 * h : 0.5 * h;
+    const double             wanted  = area_weights(surface, x).maxCoeff() / (spacing * spacing);
+    unsigned int             n = 0, n_per_triangle = 3;
+    for (unsigned int n_points = 3; n_points < wanted; n_points *= 2)
+      {
+        n += n_per_triangle == 6;
+        n_per_triangle = 9 - n_per_triangle;
+      }
+    return triangle_quadrature(n_per_triangle, n);
   }
 } // namespace tanktread

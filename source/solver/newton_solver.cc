@@ -69,8 +69,10 @@ namespace tanktread
 
     fluid_->space().reinit(r.fluid);
     fluid_->stokes().vmult(r.fluid, state.fluid);
-    const ControlPoints velocity = shell_velocity(state);
-    coupling_.spread(-state.force - state.pressure_jump * v, r.fluid);
+    ExtendedForces forces;
+    coupling_.extend(state.force, forces);
+    const ControlPoints velocity = coupling_.interpolate(state.fluid, forces) + flow_.velocity(state.x);
+    coupling_.spread(-1., state.force + state.pressure_jump * v, forces, r.fluid);
     r.shell_speed = shell_speed(r.fluid);
     r.flux        = v.cwiseProduct(velocity).sum();
     r.x           = state.x - xhat - tau * velocity - state.volume_shift * coupling_.density(v);
@@ -195,10 +197,12 @@ namespace tanktread
       increment.fluid.block(b) = solution.block(b);
     const ShellUnknowns unknowns = shell_unknowns(solution, fluid_->mesh().communicator());
     increment.pressure_jump      = unknowns.pressure_jump;
-    const ControlPoints moments  = coupling_.velocity_moments(solution, unknowns.force);
-    increment.x                  = dx0 + shell.displacement(moments);
-    increment.volume_shift       = shell.volume_shift(moments, r.x, increment.x);
-    increment.force              = shell.force_change(unknowns.force, increment.x);
+    ExtendedForces forces;
+    coupling_.extend(unknowns.force, forces);
+    const ControlPoints moments = coupling_.velocity_moments(solution, forces);
+    increment.x                 = dx0 + shell.displacement(moments);
+    increment.volume_shift      = shell.volume_shift(moments, r.x, increment.x);
+    increment.force             = shell.force_change(unknowns.force, increment.x);
     // All ranks have computed this alike up to rounding, which differs between kinds of processors: one answer for all, so that they take the same decisions.
     const MPI_Comm communicator = fluid_->mesh().communicator();
     MPI_Bcast(increment.x.data(), increment.x.size(), MPI_DOUBLE, 0, communicator);
