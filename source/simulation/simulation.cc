@@ -22,7 +22,7 @@ namespace tanktread
     Derivatives
     derivatives_needed(const Parameters &parameters)
     {
-      return parameters.scene.bending_modulus() > 0. ? Derivatives::second : Derivatives::first;
+      return parameters.scene.bending_modulus() > 0. || parameters.shell.thickness > 0. ? Derivatives::second : Derivatives::first;
     }
 
 
@@ -33,14 +33,16 @@ namespace tanktread
       run.parameter_file = parameters.file;
       run.n_ranks        = n_ranks;
       run.shear          = parameters.scene.flow == Flow::shear;
-      run.G              = parameters.scene.shear_number;
-      run.khat           = parameters.scene.reduced_bending_modulus;
+      run.G              = 1. / parameters.scene.surface_young_modulus();
+      run.khat           = parameters.scene.bending_modulus() / parameters.scene.surface_young_modulus();
       run.box_side       = parameters.scene.box_side;
-      run.left_out       = {"inertia (Re = 0)", "variable viscosity (ratio 1: Laplace form, each velocity component by itself)", "shell thickness (0)"};
+      run.left_out       = {"inertia (Re = 0)", "variable viscosity (ratio 1: Laplace form, each velocity component by itself)"};
+      if (parameters.shell.thickness == 0.)
+        run.left_out.push_back("shell thickness (0)");
       if (parameters.solver.interface == Interface::plain)
         run.left_out.push_back("the kink of the velocity and the jump of the pressure inside the cells that the shell cuts (Interface plain)");
       if (parameters.scene.bending_modulus() == 0.)
-        run.left_out.push_back("bending and second derivatives of the surface (khat = 0)");
+        run.left_out.push_back(parameters.shell.thickness == 0. ? "bending and second derivatives of the surface (khat = 0)" : "Helfrich bending (khat = 0)");
       return run;
     }
 
