@@ -93,7 +93,7 @@ def draw_relaxation(results):
 def draw_contours(results):
     """The last cut of each run with the shear plane."""
     groups = split_by_G(results)
-    figure, axes = plt.subplots(1, len(groups), figsize=(4.2 * len(groups), 3.6), squeeze=False)
+    figure, axes = plt.subplots(1, len(groups), figsize=(4.2 * len(groups), 3.2), squeeze=False, sharex=True, sharey=True)
     for axis, (title, group) in zip(axes[0], groups):
         for result, color in zip(group, COLORS):
             if result.contours:

@@ -29,6 +29,12 @@ def refined(times, D, i):
     return (times[i], D[i]) if a == 0 else (times[i] - b / (2 * a), c - b * b / (4 * a))
 
 
+def phase_angle(theta, alpha):
+    """alpha - theta from its start, continuous, in units of pi."""
+    difference = np.unwrap(alpha, period=2) - np.unwrap(theta, period=1)
+    return difference - difference[0]
+
+
 def summary(times, D, theta, alpha):
     """{mode, D_minimum, D_maximum, D_period, ...}; angles in units of pi, as they come, jumps included."""
     theta, alpha = np.unwrap(theta, period=1), np.unwrap(alpha, period=2)

@@ -135,6 +135,7 @@ class Result:
                 series.update({name: table[name] for name in ("L", "B", "W") if name in table})
                 if "alpha_over_pi" not in table:
                     return series, None
+                series["delta"] = motion.phase_angle(series["theta"], table["alpha_over_pi"])
                 return series, motion.summary(series["time"], series["D"], series["theta"], table["alpha_over_pi"])
         return None
 

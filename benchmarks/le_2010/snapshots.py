@@ -10,6 +10,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
+ELEVATION, AZIMUTH = 32, -62  # degrees; the shear plane is seen from the front
 TYPES = {"Float64": np.float64, "Int64": np.int64, "Int32": np.int32, "UInt8": np.uint8}
 
 
@@ -43,7 +44,7 @@ def marker_of(points):
 
 
 def draw_shell(axis, shell, marker, limit):
-    """Smoothly shaded faces, seen along y and a little from above; the marker is hidden when it is behind."""
+    """Shaded faces and the marker, which is hollow when it is on the far side."""
     points, faces = shell["points"], shell["faces"]
     corners = points[faces]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -52,11 +53,13 @@ def draw_shell(axis, shell, marker, limit):
     colors = plt.cm.coolwarm(0.5 + 0.5 * np.clip(shell["velocity"][faces, 0].mean(axis=1) / limit, -1, 1))
     colors[:, :3] *= light[:, None]
     axis.add_collection3d(Poly3DCollection(corners, facecolors=colors, edgecolors=colors, linewidths=0.2))
-    at = points[marker] * 1.02
-    axis.plot([at[0]], [at[1]], [at[2]], "o", color="black", markersize=5, zorder=10)
-    reach = 1.35
+    elevation, azimuth = np.radians(ELEVATION), np.radians(AZIMUTH)
+    towards_us = np.array([np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)])
+    is_visible = normals[(faces == marker).any(axis=1)].sum(axis=0) @ towards_us > 0
+    axis.plot(*points[marker][:, None], "o", color="black", markersize=5, markerfacecolor="black" if is_visible else "none", zorder=10)
+    reach = 0.95  # the picture shows more than the limits of the axes
     axis.set(xlim=(-reach, reach), ylim=(-reach, reach), zlim=(-reach, reach), box_aspect=(1, 1, 1))
-    axis.view_init(elev=15, azim=-80)
+    axis.view_init(elev=ELEVATION, azim=AZIMUTH)
     axis.set_axis_off()
 
 
