@@ -201,6 +201,8 @@ namespace tanktread
   MembraneDensity
   Shell::membrane(const Metric &metric, const unsigned int point) const
   {
+    if (parameters_.law == MembraneLaw::none)
+      return {0., Eigen::Vector3d::Zero(), Eigen::Matrix3d::Zero()};
     return parameters_.law == MembraneLaw::skalak ? skalak(metric, reference_metric_[point], moduli_.surface_shear_modulus(), parameters_.area_dilatation)
                                                   : neo_hookean(metric, reference_metric_[point], moduli_.surface_shear_modulus());
   }
@@ -253,7 +255,7 @@ namespace tanktread
             if (with_tangent)
               hessian->topLeftCorner<6, 6>().setZero();
           }
-        if (is_thick())
+        if (is_thick() || parameters_.law == MembraneLaw::none)
           continue;
         const MembraneDensity w   = membrane(metric, point);
         const Eigen::Vector3d a_1 = vector(buffers.y, k * n_rows_), a_2 = vector(buffers.y, k * n_rows_ + 1);

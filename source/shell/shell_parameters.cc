@@ -19,8 +19,8 @@ namespace tanktread
     add_enum_parameter(prm,
                        "Membrane law",
                        law,
-                       {{"neo-Hookean", MembraneLaw::neo_hookean}, {"Skalak", MembraneLaw::skalak}},
-                       "Strain energy of the membrane. Both laws have the surface shear modulus E h/3.");
+                       {{"neo-Hookean", MembraneLaw::neo_hookean}, {"Skalak", MembraneLaw::skalak}, {"none", MembraneLaw::none}},
+                       "Strain energy of the membrane. Both laws have the surface shear modulus E h/3; none: the shell bends only.");
     prm.add_parameter("Area dilatation number", area_dilatation, "C in Skalak's law, the resistance to changes of area; not used by neo-Hookean.");
     add_enum_parameter(prm,
                        "Reference curvature",

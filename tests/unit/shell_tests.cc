@@ -553,6 +553,27 @@ namespace
     EXPECT_LT(SparseMatrix(K - L).norm(), 1e-14 * L.norm());
   }
 
+  TEST(Shell, WithoutMembraneThereIsBendingAlone)
+  {
+    const Example   example;
+    ShellParameters parameters;
+    const Shell     whole(example.surface, parameters, {3., 0.1}, example.capsule.control_points);
+    const Shell     membrane(example.surface, parameters, {3., 0.}, example.capsule.control_points);
+    parameters.law = MembraneLaw::none;
+    const Shell   bending(example.surface, parameters, {3., 0.1}, example.capsule.control_points);
+    ControlPoints f, f_membrane, f_bending;
+    SparseMatrix  K, K_membrane, K_bending;
+    whole.force_and_tangent(example.x, f, K);
+    membrane.force_and_tangent(example.x, f_membrane, K_membrane);
+    bending.force_and_tangent(example.x, f_bending, K_bending);
+    EXPECT_EQ(bending.energy(example.x).membrane, 0.);
+    EXPECT_DOUBLE_EQ(bending.energy(example.x).bending, whole.energy(example.x).bending);
+    EXPECT_LT((f_bending - (f - f_membrane)).norm(), 1e-12 * f.norm());
+    EXPECT_LT((K_bending - (K - K_membrane)).norm(), 1e-12 * K.norm());
+    EXPECT_GT(f_bending.norm(), 1e-3);
+  }
+
+
   TEST(ShellParameters, AreParsedAndChecked)
   {
     ShellParameters          parameters;
