@@ -51,7 +51,7 @@ namespace tanktread
       throw InputError("Capsule/Reference curvature value: got " + std::to_string(reference_curvature_value) + "; it has to be a finite number.");
     if (!(thickness >= 0.) || !std::isfinite(thickness))
       throw InputError("Capsule/Thickness: got " + std::to_string(thickness) + "; it must not be negative.");
-    if (law == MembraneLaw::skalak && thickness > 0.)
-      throw InputError("Capsule/Thickness: got " + std::to_string(thickness) + "; Skalak's law is that of a membrane, allowed with it: 0.");
+    if (law != MembraneLaw::neo_hookean && thickness > 0.)
+      throw InputError("Capsule/Thickness: got " + std::to_string(thickness) + "; only a neo-Hookean shell can be thick, allowed with this 'Membrane law': 0.");
   }
 } // namespace tanktread

@@ -63,7 +63,7 @@ CASES = {
         section("Capsule", "set Membrane law = Skalak", "set Thickness = 0.1"),
         ["case.prm"],
         1,
-        ["case.prm:3: Capsule/Thickness: got 0.1", "allowed with it: 0"],
+        ["case.prm:3: Capsule/Thickness: got 0.1", "allowed with this 'Membrane law': 0"],
     ),
     "too_thick": (
         section("Capsule", "set Shape = oblate", "set Aspect ratio = 0.5", "set Thickness = 0.7"),

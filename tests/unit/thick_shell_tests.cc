@@ -376,8 +376,11 @@ namespace
     EXPECT_THROW(example.shell(3.), InputError); // thicker than the radius of curvature
     ShellParameters parameters;
     parameters.thickness = 0.05;
-    parameters.law       = MembraneLaw::skalak;
-    EXPECT_THROW(parameters.check(), InputError);
+    for (const MembraneLaw law : {MembraneLaw::skalak, MembraneLaw::none})
+      {
+        parameters.law = law;
+        EXPECT_THROW(parameters.check(), InputError);
+      }
     parameters.law = MembraneLaw::neo_hookean;
     EXPECT_NO_THROW(parameters.check());
     const SubdivisionSurface first(example.capsule.topology, triangle_quadrature(3), Derivatives::first);
