@@ -22,6 +22,7 @@ def arguments():
     parser.add_argument("--volume-error", type=float, default=1e-8)
     parser.add_argument("--time", type=float, help="time that the run has to reach")
     parser.add_argument("--varies", action="append", default=[], metavar="COLUMN", help="column that must not be the same in all rows")
+    parser.add_argument("--contours", metavar="TIMES", help="times of the cuts in contours.csv, by commas")
     parser.add_argument("--exit-code", type=int, default=0)
     parser.add_argument("--message", default="")
     return parser.parse_args()
@@ -49,6 +50,12 @@ def failures_of_history(args):
     for column in args.varies:
         if len({row[column] for row in rows}) == 1:
             yield f"{column} is {rows[0][column]} in all rows"
+    if args.contours:
+        with open(pathlib.Path(args.output) / "contours.csv", newline="") as file:
+            times = [float(row["time"]) for row in csv.DictReader(file)]
+        found = [time for i, time in enumerate(times) if i == 0 or time != times[i - 1]]
+        if found != [float(time) for time in args.contours.split(",")]:
+            yield f"contours at {found}, expected at {args.contours}"
     for expectation in args.expect:
         column, _, numbers = expectation.partition("=")
         value, relative = (float(number) for number in numbers.split(","))
