@@ -28,8 +28,15 @@ def becomes_sphere(word):
 
 
 def step_lengths(results):
+    """What became of the long steps: those that Newton's method does not solve are halved."""
+    def text(result):
+        name = result.name.split("/")[1].replace("_step", ", step ")
+        if not result.series:
+            return f"{name}: {result.state()}"
+        steps = result.series["step"][1:]
+        return f"{name}: {result.state()} in {len(steps)} steps, the first of {steps[0]:.2g}, the longest of {steps.max():.2g}"
     found = [result for result in results.of("fig01") if result.record and "_step" in result.name]
-    return "; ".join(f"{result.name.split('/')[1].replace('_step', ', step ')}: {result.state()}" for result in found) or "not computed"
+    return "; ".join(map(text, found)) or "not computed"
 
 
 def volume(results):

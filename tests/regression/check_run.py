@@ -23,6 +23,7 @@ def arguments():
     parser.add_argument("--time", type=float, help="time that the run has to reach")
     parser.add_argument("--keeps", action="append", default=[], metavar="COLUMN=RELATIVE", help="column that must stay within this of its first value")
     parser.add_argument("--varies", action="append", default=[], metavar="COLUMN", help="column that must not be the same in all rows")
+    parser.add_argument("--contours", metavar="TIMES", help="times of the cuts in contours.csv, by commas")
     parser.add_argument("--exit-code", type=int, default=0)
     parser.add_argument("--message", default="")
     return parser.parse_args()
@@ -56,6 +57,12 @@ def failures_of_history(args):
         print(f"{column}: changes by at most {change:.1e}")
         if not change <= float(allowed):
             yield f"{column} changes by {change}, allowed {allowed}"
+    if args.contours:
+        with open(pathlib.Path(args.output) / "contours.csv", newline="") as file:
+            times = [float(row["time"]) for row in csv.DictReader(file)]
+        found = [time for i, time in enumerate(times) if i == 0 or time != times[i - 1]]
+        if found != [float(time) for time in args.contours.split(",")]:
+            yield f"contours at {found}, expected at {args.contours}"
     for expectation in args.expect:
         column, _, numbers = expectation.partition("=")
         value, relative = (float(number) for number in numbers.split(","))
