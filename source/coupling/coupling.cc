@@ -76,6 +76,7 @@ namespace tanktread
   void
   Coupling::attach(const TaylorHoodSpace &space)
   {
+    space_         = &space;
     communicator_  = space.mesh.communicator();
     interpolation_ = std::make_unique<PointInterpolation>(space);
     x_.resize(0, 3);
@@ -134,6 +135,13 @@ namespace tanktread
     normal_field_    = density(volume_gradient);
     set_point_forces(normal_field_, normal_forces_);
     enrichment_->move(quadratic_patches(surface_, x), area_weights(surface_, x), *interpolation_);
+  }
+
+
+  Viscosity
+  Coupling::viscosity(const ControlPoints &x, const double ratio) const
+  {
+    return ShellViscosity(*space_)(SurfaceDistance(space_->mesh, quadratic_patches(surface_, x)), ratio);
   }
 
 

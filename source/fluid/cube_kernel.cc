@@ -398,6 +398,48 @@ namespace tanktread
     }
 
 
+    /** v = matrix of the strain form without `least` (grad u^T, grad v), times v. @param viscosity 27 numbers for the first of the cubes, those of the others follow. */
+    template <typename Number, int n_cubes>
+    TANKTREAD_INLINE void
+    multiply_by_viscous(Lanes<Number, n_cubes> *v, const Lanes<Number, n_cubes> h, const Number *viscosity, const Number least)
+    {
+      using V                                = Lanes<Number, n_cubes>;
+      constexpr GaussMatrices<Number> matrix = gauss_matrices<Number>();
+      V                               a[27], b[27], g_x[27], g_y[27], g_z[27];
+      along<Number, 1, false, false>(matrix.derivative, v, a);
+      along<Number, 3, false, false>(matrix.value, a, b);
+      along<Number, 9, false, false>(matrix.value, b, g_x);
+      along<Number, 1, false, false>(matrix.value, v, a);
+      along<Number, 3, false, false>(matrix.derivative, a, b);
+      along<Number, 9, false, false>(matrix.value, b, g_y);
+      along<Number, 3, false, false>(matrix.value, a, b);
+      along<Number, 9, false, false>(matrix.derivative, b, g_z);
+
+      constexpr Number weight[3] = {Number(5. / 18), Number(8. / 18), Number(5. / 18)};
+      for (int q = 0; q < 27; ++q)
+        {
+          Number mu[n_cubes];
+          for (int cube = 0; cube < n_cubes; ++cube)
+            mu[cube] = viscosity[27 * cube + q];
+          const V volume = h * (weight[q % 3] * weight[q / 3 % 3] * weight[q / 9]);
+          const V factor = volume * in_components<Number, n_cubes>(mu), excess = factor - least * volume;
+          const V x = g_x[q], y = g_y[q], z = g_z[q];
+          g_x[q] = factor * x + excess * transposed<Number, n_cubes, 0>(x, y, z);
+          g_y[q] = factor * y + excess * transposed<Number, n_cubes, 1>(x, y, z);
+          g_z[q] = factor * z + excess * transposed<Number, n_cubes, 2>(x, y, z);
+        }
+
+      along<Number, 9, true, false>(matrix.derivative, g_z, b);
+      along<Number, 3, true, false>(matrix.value, b, a);
+      along<Number, 9, true, false>(matrix.value, g_y, b);
+      along<Number, 3, true, true>(matrix.derivative, b, a);
+      along<Number, 1, true, false>(matrix.value, a, v);
+      along<Number, 9, true, false>(matrix.value, g_x, b);
+      along<Number, 3, true, false>(matrix.value, b, a);
+      along<Number, 1, true, true>(matrix.derivative, a, v);
+    }
+
+
     template <typename Number, int n_cubes>
     struct Viscous
     {
@@ -407,44 +449,45 @@ namespace tanktread
       TANKTREAD_INLINE void
       operator()(const double *size, const unsigned int *nodes, const unsigned int *, const unsigned int first_cube) const
       {
-        using V                                = Lanes<Number, n_cubes>;
-        constexpr GaussMatrices<Number> matrix = gauss_matrices<Number>();
-        const V                         h      = sizes<Number, n_cubes>(size, 1);
-        V                               v[27], a[27], b[27], g_x[27], g_y[27], g_z[27];
+        Lanes<Number, n_cubes> v[27];
         for (int i = 0; i < 27; ++i)
           v[i] = gather<Number, n_cubes>(u, nodes + i);
-        along<Number, 1, false, false>(matrix.derivative, v, a);
-        along<Number, 3, false, false>(matrix.value, a, b);
-        along<Number, 9, false, false>(matrix.value, b, g_x);
-        along<Number, 1, false, false>(matrix.value, v, a);
-        along<Number, 3, false, false>(matrix.derivative, a, b);
-        along<Number, 9, false, false>(matrix.value, b, g_y);
-        along<Number, 3, false, false>(matrix.value, a, b);
-        along<Number, 9, false, false>(matrix.derivative, b, g_z);
-
-        constexpr Number weight[3] = {Number(5. / 18), Number(8. / 18), Number(5. / 18)};
-        for (int q = 0; q < 27; ++q)
-          {
-            Number mu[n_cubes];
-            for (int cube = 0; cube < n_cubes; ++cube)
-              mu[cube] = viscosity[27 * (first_cube + cube) + q];
-            const V factor = h * in_components<Number, n_cubes>(mu) * (weight[q % 3] * weight[q / 3 % 3] * weight[q / 9]);
-            const V x = g_x[q], y = g_y[q], z = g_z[q];
-            g_x[q] = factor * (x + transposed<Number, n_cubes, 0>(x, y, z));
-            g_y[q] = factor * (y + transposed<Number, n_cubes, 1>(x, y, z));
-            g_z[q] = factor * (z + transposed<Number, n_cubes, 2>(x, y, z));
-          }
-
-        along<Number, 9, true, false>(matrix.derivative, g_z, b);
-        along<Number, 3, true, false>(matrix.value, b, a);
-        along<Number, 9, true, false>(matrix.value, g_y, b);
-        along<Number, 3, true, true>(matrix.derivative, b, a);
-        along<Number, 1, true, false>(matrix.value, a, v);
-        along<Number, 9, true, false>(matrix.value, g_x, b);
-        along<Number, 3, true, false>(matrix.value, b, a);
-        along<Number, 1, true, true>(matrix.derivative, a, v);
+        multiply_by_viscous<Number, n_cubes>(v, sizes<Number, n_cubes>(size, 1), viscosity + 27 * std::size_t(first_cube), Number(0));
         for (int i = 0; i < 27; ++i)
           scatter<Number, n_cubes>(y, nodes + i, v[i]);
+      }
+    };
+
+
+    /** As Stokes, with the strain form without `least` (grad u^T, grad v). */
+    template <typename Number, int n_cubes>
+    struct ViscousStokes
+    {
+      const Number *viscosity;
+      Number        least;
+      const Number *u, *p;
+      Number       *y_u, *y_p;
+
+      TANKTREAD_INLINE void
+      operator()(const double *size, const unsigned int *nodes, const unsigned int *p_nodes, const unsigned int first_cube) const
+      {
+        using V = Lanes<Number, n_cubes>;
+        V       v[27], w[27], q[8];
+        const V area = sizes<Number, n_cubes>(size, 2) * Number(1. / 216);
+        for (int a = 0; a < 27; ++a)
+          v[a] = gather<Number, n_cubes>(u, nodes + a);
+        contract<Number, n_cubes>(v, q);
+        for (int j = 0; j < 8; ++j)
+          {
+            const V part = area * q[j];
+            for (int cube = 0; cube < n_cubes; ++cube)
+              y_p[p_nodes[8 * cube + j]] -= part[4 * cube] + part[4 * cube + 1] + part[4 * cube + 2];
+          }
+        gather_pressures<Number, n_cubes>(p, p_nodes, area, q);
+        expand<Number, n_cubes>(q, w);
+        multiply_by_viscous<Number, n_cubes>(v, sizes<Number, n_cubes>(size, 1), viscosity + 27 * std::size_t(first_cube), least);
+        for (int a = 0; a < 27; ++a)
+          scatter<Number, n_cubes>(y_u, nodes + a, v[a] - w[a]);
       }
     };
 
@@ -550,6 +593,21 @@ namespace tanktread
 
   template <typename Number>
   void
+  add_viscous_stokes(const InstructionSet set,
+                     const Cubes         &cubes,
+                     const Number        *viscosity,
+                     const Number         least,
+                     const Number        *u,
+                     const Number        *p,
+                     Number              *y_u,
+                     Number              *y_p)
+  {
+    run<ViscousStokes, Number>(set, cubes, viscosity, least, u, p, y_u, y_p);
+  }
+
+
+  template <typename Number>
+  void
   add_pressure_mass(const Cubes &cubes, const Number *p, Number *y_p)
   {
     // Along each direction the mass matrix of the unit interval is (1 + J)/6, J being all ones.
@@ -574,11 +632,12 @@ namespace tanktread
   }
 
 
-#define TANKTREAD_INSTANTIATE(Number)                                                                          \
-  template void add_laplace(InstructionSet, const Cubes &, const Number *, Number *);                          \
-  template void add_stokes(InstructionSet, const Cubes &, const Number *, const Number *, Number *, Number *); \
-  template void add_pressure_gradient(InstructionSet, const Cubes &, const Number *, Number *);                \
-  template void add_viscous(InstructionSet, const Cubes &, const Number *, const Number *, Number *);          \
+#define TANKTREAD_INSTANTIATE(Number)                                                                                                          \
+  template void add_laplace(InstructionSet, const Cubes &, const Number *, Number *);                                                          \
+  template void add_stokes(InstructionSet, const Cubes &, const Number *, const Number *, Number *, Number *);                                 \
+  template void add_pressure_gradient(InstructionSet, const Cubes &, const Number *, Number *);                                                \
+  template void add_viscous(InstructionSet, const Cubes &, const Number *, const Number *, Number *);                                          \
+  template void add_viscous_stokes(InstructionSet, const Cubes &, const Number *, Number, const Number *, const Number *, Number *, Number *); \
   template void add_pressure_mass(const Cubes &, const Number *, Number *);
   TANKTREAD_INSTANTIATE(float)
   TANKTREAD_INSTANTIATE(double)

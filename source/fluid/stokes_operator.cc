@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Part of Tanktread: the discrete Stokes equations of one viscosity.
+// Part of Tanktread: the discrete Stokes equations.
 
 #include <tanktread/fluid/stokes_operator.h>
 
@@ -35,7 +35,10 @@ namespace tanktread
     p.update(p_.data());
     std::fill(y_u_.begin(), y_u_.end(), 0.);
     std::fill(y_p_.begin(), y_p_.end(), 0.);
-    add_stokes(instructions_, cubes(space_), u_.data(), p_.data(), y_u_.data(), y_p_.data());
+    if (viscosity_ == nullptr)
+      add_stokes(instructions_, cubes(space_), u_.data(), p_.data(), y_u_.data(), y_p_.data());
+    else
+      add_viscous_stokes(instructions_, cubes(space_), viscosity_->at_points().data(), viscosity_->least(), u_.data(), p_.data(), y_u_.data(), y_p_.data());
     u.collect(y_u_.data());
     p.collect(y_p_.data());
     u.store(y_u_.data(), dst.block(velocity_block), false);

@@ -36,7 +36,8 @@ namespace tanktread
                              Coupling                 &coupling,
                              const double              volume,
                              const UndisturbedFlow     flow,
-                             Timings                  &timings)
+                             Timings                  &timings,
+                             const double              viscosity_ratio)
     : parameters_(parameters)
     , shell_(shell)
     , surface_(surface)
@@ -45,14 +46,44 @@ namespace tanktread
     , flow_(flow)
     , timings_(timings)
     , implicit_shell_(shell.communicator())
+    , viscosity_ratio_(viscosity_ratio)
   {}
 
 
   void
-  NewtonSolver::attach(const Fluid &fluid)
+  NewtonSolver::attach(Fluid &fluid)
   {
     fluid_ = &fluid;
     coupling_.attach(fluid.space());
+    viscosity_x_.resize(0, 3);
+  }
+
+
+  void
+  NewtonSolver::set_viscosity(const ControlPoints &x)
+  {
+    if (viscosity_ratio_ == 1. || (viscosity_x_.rows() == x.rows() && viscosity_x_ == x))
+      return;
+    const Timings::Scope scope(timings_, "Viscosity");
+    viscosity_x_ = x;
+    fluid_->set_viscosity(coupling_.viscosity(x, viscosity_ratio_));
+    dealii::Tensor<2, 3> gradient;
+    for (unsigned int c = 0; c < 3; ++c)
+      for (unsigned int d = 0; d < 3; ++d)
+        gradient[c][d] = flow_.gradient()(c, d);
+    undisturbed_load_.reinit(fluid_->space().velocity->partitioner());
+    fluid_->viscosity()->add_excess_stress(fluid_->space(), gradient, undisturbed_load_);
+  }
+
+
+  double
+  NewtonSolver::dissipation(const State &state) const
+  {
+    double result = state.force.cwiseProduct(shell_velocity(state) - flow_.velocity(state.x)).sum();
+    if (viscosity_ratio_ == 1.)
+      return result;
+    const Eigen::Matrix3d strain_rate = 0.5 * (flow_.gradient() + flow_.gradient().transpose());
+    return result + undisturbed_load_ * state.fluid.block(velocity_block) + 2. * strain_rate.squaredNorm() * fluid_->viscosity()->excess(fluid_->space());
   }
 
 
@@ -69,6 +100,8 @@ namespace tanktread
 
     fluid_->space().reinit(r.fluid);
     fluid_->stokes().vmult(r.fluid, state.fluid);
+    if (viscosity_ratio_ != 1.)
+      r.fluid.block(velocity_block) += undisturbed_load_;
     const ControlPoints velocity = shell_velocity(state);
     coupling_.spread(-state.force - state.pressure_jump * v, r.fluid);
     r.shell_speed = shell_speed(r.fluid);
@@ -160,7 +193,7 @@ namespace tanktread
     const Timings::Scope           scope(timings_, "Linear solver");
     const unsigned int             n_points = r.x.rows();
     const MonolithicOperator       matrix(fluid_->stokes(), shell, &timings_);
-    const MonolithicPreconditioner preconditioner(fluid_->preconditioner(), shell, volume_, &timings_);
+    const MonolithicPreconditioner preconditioner(fluid_->preconditioner(), shell, volume_ / viscosity_ratio_, &timings_);
 
     const ControlPoints dx0 = shell.displacement_of_residual(r.x, r.volume);
     FluidBlockVector    rhs = monolithic_vector(fluid_->space(), n_points), solution(rhs);
@@ -249,12 +282,13 @@ namespace tanktread
     constexpr unsigned int patience  = 8;
     const double           tolerance = n_moves < patience ? std::min(0.002 * finest_cell(), 100. * parameters_.newton_tolerance) : 0.02 * finest_cell();
     const bool             moves     = trial_points() == Points::stay && coupling_.distance(state.x) > tolerance;
+    const bool             mixes     = viscosity_ratio_ != 1. && (state.x - viscosity_x_).rowwise().norm().maxCoeff() > tolerance;
     if (moves)
-      {
-        coupling_.move(state.x, volume_gradient(surface_, state.x));
-        ++n_moves;
-      }
-    return moves;
+      coupling_.move(state.x, volume_gradient(surface_, state.x));
+    if (mixes)
+      set_viscosity(state.x);
+    n_moves += moves || mixes;
+    return moves || mixes;
   }
 
 
@@ -273,6 +307,7 @@ namespace tanktread
     State        trial = state;
     try
       {
+        set_viscosity(trial.x);
         Residual     r        = residual(trial, xhat, tau, Points::follow);
         double       length   = dealii::Utilities::MPI::broadcast(fluid_->mesh().communicator(), tau * speed(r, tau), 0); // about that of the next displacement
         bool         cautious = false;
@@ -294,7 +329,8 @@ namespace tanktread
                                                          motion_accuracy(length / tau),
                                                       complete ? PointDerivatives::complete : PointDerivatives::frozen,
                                                          tangent_,
-                                                         flow_.gradient()});
+                                                         flow_.gradient(),
+                                                         0.5 * (1. + viscosity_ratio_)});
             if (report.residuals.empty())
               report.residuals.push_back(norm(r, tau));
             const std::string failure = iterate(trial, r, shell, xhat, report);
@@ -310,7 +346,7 @@ namespace tanktread
               }
             if (follow_shell(trial, n_moves))
               {
-                r                       = residual(trial, xhat, tau, Points::stay);
+                r                       = residual(trial, xhat, tau, trial_points());
                 report.residuals.back() = norm(r, tau);
               }
             solved = is_solved(r, report.residuals.back());
@@ -331,6 +367,7 @@ namespace tanktread
   NewtonSolver::solve_flow(State &state)
   {
     state.force = shell_.force(state.x);
+    set_viscosity(state.x);
     State          increment;
     const Residual r = residual(state, state.x, 0., Points::follow);
     // Relative to the loads of the shell and of unit pressure, not to what the initial guess has left of them.
@@ -338,6 +375,8 @@ namespace tanktread
     fluid_->space().reinit(load);
     coupling_.spread(state.force, load);
     coupling_.spread(volume_gradient(surface_, state.x), load);
+    if (viscosity_ratio_ != 1.)
+      load.block(velocity_block) += undisturbed_load_;
     const double wanted = std::max(1e-10, 1e-2 * parameters_.newton_tolerance) * load.l2_norm(), given = std::hypot(r.fluid.l2_norm(), r.flux);
     if (given <= wanted)
       return 0;

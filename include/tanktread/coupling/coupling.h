@@ -7,6 +7,7 @@
 #include <tanktread/base/vector4.h>
 #include <tanktread/coupling/interface.h>
 #include <tanktread/coupling/jump_enrichment.h>
+#include <tanktread/coupling/shell_viscosity.h>
 #include <tanktread/fluid/point_interpolation.h>
 #include <tanktread/surface/mass_inverse.h>
 #include <tanktread/surface/subdivision_surface.h>
@@ -60,6 +61,10 @@ namespace tanktread
     {
       return interpolation_->local_points().size();
     }
+
+    /** Viscosity of the fluid's cells with the shell at x, 1 outside and `ratio` inside. The surface needs second derivatives. Collective. */
+    Viscosity
+    viscosity(const ControlPoints &x, double ratio) const;
 
     /** S x as points of the fluid. */
     std::vector<dealii::Point<3>>
@@ -167,6 +172,7 @@ namespace tanktread
     SparseMatrix                        mass_;
     MassInverse                         mass_inverse_;
     MPI_Comm                            communicator_ = MPI_COMM_NULL;
+    const TaylorHoodSpace              *space_        = nullptr;
     std::unique_ptr<PointInterpolation> interpolation_;
     std::unique_ptr<JumpEnrichment>     enrichment_; // only with Interface::enriched
     std::vector<FacePoints>             local_faces_;
