@@ -27,9 +27,7 @@ namespace tanktread
       , shell(surface, {}, {1. / shear_number, reduced_bending / shear_number}, shape.control_points)
       , mesh_parameters{box_side / cells, 2.5, 1.5}
       , fluid(MPI_COMM_WORLD, box_side, mesh_parameters)
-      , coupling_surface(shape.topology,
-                         triangle_quadrature(3, coupling_subdivisions(shape.topology, shape.control_points, 3, box_side / cells)),
-                         Derivatives::first)
+      , coupling_surface(shape.topology, coupling_quadrature(shape.topology, shape.control_points, Interface::plain, box_side / cells), Derivatives::first)
       , coupling(coupling_surface, area_weights(coupling_surface, shape.control_points))
       , volume(enclosed_volume(surface, shape.control_points))
       , distributed_shell(shell, shape.topology, MPI_COMM_WORLD)

@@ -152,6 +152,20 @@ namespace tanktread
   }
 
 
+  void
+  Coupling::extend(const ControlPoints &f, ExtendedForces &forces) const
+  {
+    if (interface_ == Interface::plain)
+      return;
+    mass_inverse_.solve(f, density_);
+    set_point_forces(density_, forces.at_points);
+    const double factor = normal_field_.cwiseProduct(f).sum() / normal_field_.cwiseProduct(volume_gradient_).sum();
+    for (std::size_t i = 0; i < normal_forces_.size(); ++i)
+      forces.at_points[i] -= factor * normal_forces_[i];
+    enrichment_->extend(forces);
+  }
+
+
   ControlPoints
   Coupling::velocity_moments(const FluidBlockVector &fields) const
   {
@@ -160,26 +174,21 @@ namespace tanktread
 
 
   ControlPoints
-  Coupling::velocity_moments(const FluidBlockVector &fields, const ControlPoints &f) const
+  Coupling::velocity_moments(const FluidBlockVector &fields, const ExtendedForces &f) const
   {
     return all_moments(fields, &f);
   }
 
 
   ControlPoints
-  Coupling::all_moments(const FluidBlockVector &fields, const ControlPoints *const f) const
+  Coupling::all_moments(const FluidBlockVector &fields, const ExtendedForces *const f) const
   {
     interpolation_->values(fields, values_);
     if (interface_ == Interface::plain)
       return sum_moments(values_);
 
     enriched_values_.assign(values_.size(), 0.);
-    if (f != nullptr)
-      {
-        set_point_forces(density(*f), enriched_forces_);
-        project(*f);
-      }
-    enrichment_->add_velocities(fields, f != nullptr ? &enriched_forces_ : nullptr, enriched_values_);
+    enrichment_->add_velocities(fields, f, enriched_values_);
     // The transpose of P takes the multiple of v away that makes the further moments orthogonal to m = M^{-1} v.
     double flux = 0.;
     for (std::size_t i = 0; i < values_.size(); ++i)
@@ -228,6 +237,15 @@ namespace tanktread
   ControlPoints
   Coupling::interpolate(const FluidBlockVector &fields, const ControlPoints &f) const
   {
+    ExtendedForces forces;
+    extend(f, forces);
+    return interpolate(fields, forces);
+  }
+
+
+  ControlPoints
+  Coupling::interpolate(const FluidBlockVector &fields, const ExtendedForces &f) const
+  {
     return density(velocity_moments(fields, f));
   }
 
@@ -248,11 +266,13 @@ namespace tanktread
 
 
   void
-  Coupling::project(const ControlPoints &f) const
+  Coupling::carry_pressure(const ControlPoints &f, VertexSides &sides, FluidBlockVector &fields) const
   {
-    const double factor = normal_field_.cwiseProduct(f).sum() / normal_field_.cwiseProduct(volume_gradient_).sum();
-    for (std::size_t i = 0; i < enriched_forces_.size(); ++i)
-      enriched_forces_[i] -= factor * normal_forces_[i];
+    if (interface_ == Interface::plain)
+      return;
+    ExtendedForces forces;
+    extend(f, forces);
+    enrichment_->carry_pressure(forces, sides, fields);
   }
 
 
@@ -285,12 +305,18 @@ namespace tanktread
   void
   Coupling::spread(const ControlPoints &f, FluidBlockVector &load) const
   {
-    spread_plainly(f, load);
-    if (interface_ == Interface::plain)
-      return;
-    enriched_forces_ = values_;
-    project(f);
-    enrichment_->add_load(enriched_forces_, load);
+    ExtendedForces forces;
+    extend(f, forces);
+    spread(1., f, forces, load);
+  }
+
+
+  void
+  Coupling::spread(const double factor, const ControlPoints &f, const ExtendedForces &forces, FluidBlockVector &load) const
+  {
+    spread_plainly(factor * f, load);
+    if (interface_ == Interface::enriched)
+      enrichment_->add_load(forces, factor, load);
   }
 
 
@@ -371,14 +397,18 @@ namespace tanktread
   }
 
 
-  unsigned int
-  coupling_subdivisions(const TriangleMesh &topology, const ControlPoints &x, const unsigned int points_per_face, const double h)
+  TriangleQuadrature
+  coupling_quadrature(const TriangleMesh &topology, const ControlPoints &x, const Interface interface, const double h)
   {
-    const SubdivisionSurface surface(topology, triangle_quadrature(points_per_face), Derivatives::first);
-    const double             largest = area_weights(surface, x).maxCoeff();
-    unsigned int             result  = 0;
-    for (double area = largest; area > 0.25 * h * h; area *= 0.25)
-      ++result;
-    return result;
+    const SubdivisionSurface surface(topology, triangle_quadrature(1), Derivatives::first);
+    const double             spacing = interface == Interface::enriched ? 0.3 * h : 0.5 * h;
+    const double             wanted  = area_weights(surface, x).maxCoeff() / (spacing * spacing);
+    unsigned int             n = 0, n_per_triangle = 3;
+    for (unsigned int n_points = 3; n_points < wanted; n_points *= 2)
+      {
+        n += n_per_triangle == 6;
+        n_per_triangle = 9 - n_per_triangle;
+      }
+    return triangle_quadrature(n_per_triangle, n);
   }
 } // namespace tanktread

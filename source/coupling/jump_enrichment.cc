@@ -159,7 +159,6 @@ namespace tanktread
     , locator_(space.mesh)
     , extension_(ScalarSpace(space.mesh, 1, false), 4)
     , extension_values_(extension_.full_size())
-    , self_values_(extension_.full_size())
     , pressure_values_(space.pressure->full_size())
   {
     const NodeSpace              &p = *space.pressure;
@@ -225,6 +224,7 @@ namespace tanktread
     const double        h    = mesh.cell_size(mesh.finest_level());
     std::vector<double> phi(space_.velocity->n_local(), std::nan(""));
     cut_cells_.clear();
+    nearby_cells_.clear();
     for (const Lattice &position : distance.cells_nearby())
       {
         dealii::Point<3> centre;
@@ -247,9 +247,50 @@ namespace tanktread
             distances.inside[a] = value < 0.;
             n_inside += distances.inside[a];
           }
+        nearby_cells_.push_back(cell);
         if (n_inside > 0 && n_inside < 27)
           add_cut_cell(cell, distances);
       }
+    set_sides(phi);
+  }
+
+
+  void
+  JumpEnrichment::set_sides(const std::vector<double> &phi)
+  {
+    const NodeSpace &space = *space_.pressure;
+    std::fill(pressure_values_.begin(), pressure_values_.end(), 0.);
+    for (const unsigned int cell : nearby_cells_)
+      for (unsigned int j = 0; j < 8; ++j)
+        pressure_values_[space.cell_nodes(cell)[j]] = phi[space_.velocity->cell_nodes(cell)[node_of_vertex(j)]] < 0. ? -1. : 1.;
+    space.collect(pressure_values_.data()); // several ranks may know
+    sides_.resize(space.n_owned());
+    for (unsigned int i = 0; i < space.n_owned(); ++i)
+      sides_[i] = (pressure_values_[i] > 0.) - (pressure_values_[i] < 0.);
+  }
+
+
+  void
+  JumpEnrichment::carry_pressure(const ExtendedForces &forces, VertexSides &sides, FluidBlockVector &fields) const
+  {
+    const NodeSpace    &space = *space_.pressure;
+    std::vector<double> known(space.n_owned()), f_n(space.n_owned());
+    for (const bool counting : {true, false})
+      {
+        std::fill(pressure_values_.begin(), pressure_values_.end(), 0.);
+        for (const unsigned int cell : nearby_cells_)
+          for (unsigned int j = 0; j < 8; ++j)
+            pressure_values_[space.cell_nodes(cell)[j]] = counting ? 1. : forces.at_vertices[4 * extension_.cell_nodes(cell)[j] + 3];
+        space.collect(pressure_values_.data());
+        std::copy_n(pressure_values_.begin(), space.n_owned(), counting ? known.begin() : f_n.begin());
+      }
+    std::fill(pressure_values_.begin(), pressure_values_.end(), 0.);
+    if (!sides.empty())
+      for (unsigned int i = 0; i < space.n_owned(); ++i)
+        if (sides[i] * sides_[i] < 0)
+          pressure_values_[i] = sides_[i] * f_n[i] / known[i];
+    space.store(pressure_values_.data(), fields.block(pressure_block), true);
+    sides = sides_;
   }
 
 
@@ -398,7 +439,7 @@ namespace tanktread
 
 
   void
-  JumpEnrichment::extend(const std::vector<double> &forces) const
+  JumpEnrichment::extend(ExtendedForces &forces) const
   {
     std::fill(extension_values_.begin(), extension_values_.end(), 0.);
     for (const PointGroup &group : groups_)
@@ -406,7 +447,7 @@ namespace tanktread
         VertexForces sums;
         for (unsigned int i = group.begin; i < group.end; ++i)
           {
-            const Vector4 f(&forces[3 * point_order_[i]]), n = normals_[i];
+            const Vector4 f(&forces.at_points[3 * point_order_[i]]), n = normals_[i];
             const double  f_n  = f[0] * n[0] + f[1] * n[1] + f[2] * n[2];
             const Vector4 both = f + -f_n * n + Vector4(0., 0., 0., f_n);
             for (unsigned int v = 0; v < 8; ++v)
@@ -415,13 +456,13 @@ namespace tanktread
         add_vertex_values(group.cell, sums);
       }
     average();
+    forces.at_vertices = extension_values_;
   }
 
 
   void
-  JumpEnrichment::add_load(const std::vector<double> &forces, FluidBlockVector &load) const
+  JumpEnrichment::add_load(const ExtendedForces &forces, const double factor, FluidBlockVector &load) const
   {
-    extend(forces);
     const NodeSpace        &u_space = *space_.velocity, &p_space = *space_.pressure;
     double *const           load_u = load.block(velocity_block).begin();
     std::array<Vector4, 27> loads;
@@ -429,18 +470,18 @@ namespace tanktread
     for (const CutCell &cut : cut_cells_)
       {
         const double              h       = u_space.cell_sizes()[cut.cell];
-        const VertexForces        f       = vertex_values(extension_values_, cut.cell);
+        const VertexForces        f       = vertex_values(forces.at_vertices, cut.cell);
         const unsigned int *const nodes   = u_space.cell_nodes(cut.cell);
         const unsigned int *const p_nodes = p_space.cell_nodes(cut.cell);
         node_loads(cut.laplace, cut.pressure, h, f, loads);
         for (unsigned int b = 0; b < 27; ++b)
-          add_at(u_space, nodes[b], loads[b], load_u);
+          add_at(u_space, nodes[b], factor * loads[b], load_u);
         for (unsigned int j = 0; j < 8; ++j)
           {
             Vector4 sum;
             for (unsigned int v = 0; v < 8; ++v)
               sum += vector(cut.divergence[j][v]).times(f[v]);
-            pressure_values_[p_nodes[j]] += h * h * (sum[0] + sum[1] + sum[2]);
+            pressure_values_[p_nodes[j]] += factor * h * h * (sum[0] + sum[1] + sum[2]);
           }
       }
     load.block(velocity_block).compress(dealii::VectorOperation::add);
@@ -516,13 +557,8 @@ namespace tanktread
 
 
   void
-  JumpEnrichment::add_velocities(const FluidBlockVector &fields, const std::vector<double> *const forces, std::vector<double> &values) const
+  JumpEnrichment::add_velocities(const FluidBlockVector &fields, const ExtendedForces *const forces, std::vector<double> &values) const
   {
-    if (forces != nullptr)
-      {
-        extend(*forces);
-        std::copy(extension_values_.begin(), extension_values_.end(), self_values_.begin());
-      }
     load_pressure(fields);
     const FluidVector &u = fields.block(velocity_block);
     u.update_ghost_values();
@@ -532,7 +568,7 @@ namespace tanktread
         VertexForces r;
         add_field_response(cut, u.begin(), pressure_values_.data(), r);
         if (forces != nullptr)
-          add_self_response(cut, vertex_values(self_values_, cut.cell), *forces, r, values);
+          add_self_response(cut, vertex_values(forces->at_vertices, cut.cell), forces->at_points, r, values);
         add_vertex_values(cut.cell, r);
       }
     u.zero_out_ghost_values();

@@ -59,15 +59,12 @@ namespace tanktread
     }
 
 
-    /** Points closer than half a fluid cell to each other; a quarter for the enriched interface, whose velocities have a kink there (measured: half leaves twice the error). */
     SubdivisionSurface
     make_coupling_surface(const FittedShape &shape, const Interface interface, const double viscosity_ratio, const FluidMesh &mesh)
     {
-      const bool   enriched = interface == Interface::enriched;
-      const double h        = mesh.cell_size(mesh.finest_level());
       return {shape.topology,
-              triangle_quadrature(3, coupling_subdivisions(shape.topology, shape.control_points, 3, enriched ? 0.5 * h : h)),
-              enriched || viscosity_ratio != 1. ? Derivatives::second : Derivatives::first};
+              coupling_quadrature(shape.topology, shape.control_points, interface, mesh.cell_size(mesh.finest_level())),
+              interface == Interface::enriched || viscosity_ratio != 1. ? Derivatives::second : Derivatives::first};
     }
 
 
@@ -120,6 +117,7 @@ namespace tanktread
     solver_.attach(fluid_);
     stepper_.forget_flow();
     fluid_.space().reinit(state_.fluid);
+    state_.sides.clear();
   }
 
 

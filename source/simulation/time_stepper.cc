@@ -51,6 +51,8 @@ namespace tanktread
     if (!previous_state_)
       return guess;
     const double ratio = length / previous_length_;
+    solver_.carry_pressure(guess);
+    solver_.carry_pressure(*previous_state_);
     guess.x += ratio * (state.x - previous_state_->x);
     guess.force += ratio * (state.force - previous_state_->force);
     guess.pressure_jump += ratio * (state.pressure_jump - previous_state_->pressure_jump);

@@ -4,6 +4,7 @@
 #include <tanktread/base/mpi_errors.h>
 #include <tanktread/solver/implicit_shell.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace tanktread
@@ -51,11 +52,11 @@ namespace tanktread
         worn_out_ = report.iterations > 0;
         return;
       }
-    const double decades = std::log10(report.initial_residual / report.final_residual);
-    if (iterations_per_decade_ == 0.)
-      iterations_per_decade_ = report.iterations / decades;
-    else if (report.iterations > 1.1 * iterations_per_decade_ * decades + 1.)
+    const double per_decade = report.iterations / std::log10(report.initial_residual / report.final_residual);
+    if (iterations_per_decade_ > 0. && report.iterations * (1. - 1.1 * iterations_per_decade_ / per_decade) > 1.)
       worn_out_ = true;
+    // The least of all: a last solve that has little left to do may look dear.
+    iterations_per_decade_ = iterations_per_decade_ > 0. ? std::min(iterations_per_decade_, per_decade) : per_decade;
   }
 
 

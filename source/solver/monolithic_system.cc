@@ -54,7 +54,8 @@ namespace tanktread
     ControlPoints       moments, dx;
     {
       const Timings::Scope scope(timings_, "- coupling");
-      moments = coupling.velocity_moments(src, unknowns.force);
+      coupling.extend(unknowns.force, forces_);
+      moments = coupling.velocity_moments(src, forces_);
     }
     {
       const Timings::Scope scope(timings_, "- shell");
@@ -66,11 +67,11 @@ namespace tanktread
     }
     {
       const Timings::Scope scope(timings_, "- coupling");
-      const ControlPoints  force = -unknowns.force - unknowns.pressure_jump * shell_.volume_gradient();
+      const ControlPoints  force = unknowns.force + unknowns.pressure_jump * shell_.volume_gradient();
       if (shell_.points_move())
-        coupling.spread_with_motion(force, dx, -shell_.density(), dst);
+        coupling.spread_with_motion(-force, dx, -shell_.density(), dst);
       else
-        coupling.spread(force, dst);
+        coupling.spread(-1., force, forces_, dst);
     }
     const Timings::Scope scope(timings_, "- shell");
     set_shell_unknowns(dst, {-shell_.flux(moments, dx), shell_.damped(unknowns.force + shell_.stiffness_times(dx))});

@@ -88,7 +88,7 @@ namespace tanktread
 
 
   Residual
-  NewtonSolver::residual(const State &state, const ControlPoints &xhat, const double tau, const Points points)
+  NewtonSolver::residual(State &state, const ControlPoints &xhat, const double tau, const Points points)
   {
     const Timings::Scope scope(timings_, "Residual");
     Residual             r;
@@ -96,18 +96,35 @@ namespace tanktread
     r.volume              = enclosed_volume(surface_, state.x) - volume_;
     const ControlPoints v = volume_gradient(surface_, state.x);
     if (points == Points::follow)
-      coupling_.move(state.x, v);
+      move_points(state);
 
     fluid_->space().reinit(r.fluid);
     fluid_->stokes().vmult(r.fluid, state.fluid);
     if (viscosity_ratio_ != 1.)
       r.fluid.block(velocity_block) += undisturbed_load_;
-    const ControlPoints velocity = shell_velocity(state);
-    coupling_.spread(-state.force - state.pressure_jump * v, r.fluid);
+    ExtendedForces forces;
+    coupling_.extend(state.force, forces);
+    const ControlPoints velocity = coupling_.interpolate(state.fluid, forces) + flow_.velocity(state.x);
+    coupling_.spread(-1., state.force + state.pressure_jump * v, forces, r.fluid);
     r.shell_speed = shell_speed(r.fluid);
     r.flux        = v.cwiseProduct(velocity).sum();
     r.x           = state.x - xhat - tau * velocity - state.volume_shift * coupling_.density(v);
     return r;
+  }
+
+
+  void
+  NewtonSolver::move_points(State &state)
+  {
+    coupling_.move(state.x, volume_gradient(surface_, state.x));
+    carry_pressure(state);
+  }
+
+
+  void
+  NewtonSolver::carry_pressure(State &state) const
+  {
+    coupling_.carry_pressure(state.force, state.sides, state.fluid);
   }
 
 
@@ -213,10 +230,12 @@ namespace tanktread
       increment.fluid.block(b) = solution.block(b);
     const ShellUnknowns unknowns = shell_unknowns(solution, fluid_->mesh().communicator());
     increment.pressure_jump      = unknowns.pressure_jump;
-    const ControlPoints moments  = coupling_.velocity_moments(solution, unknowns.force);
-    increment.x                  = dx0 + shell.displacement(moments);
-    increment.volume_shift       = shell.volume_shift(moments, r.x, increment.x);
-    increment.force              = shell.force_change(unknowns.force, increment.x);
+    ExtendedForces forces;
+    coupling_.extend(unknowns.force, forces);
+    const ControlPoints moments = coupling_.velocity_moments(solution, forces);
+    increment.x                 = dx0 + shell.displacement(moments);
+    increment.volume_shift      = shell.volume_shift(moments, r.x, increment.x);
+    increment.force             = shell.force_change(unknowns.force, increment.x);
     // All ranks have computed this alike up to rounding, which differs between kinds of processors: one answer for all, so that they take the same decisions.
     const MPI_Comm communicator = fluid_->mesh().communicator();
     MPI_Bcast(increment.x.data(), increment.x.size(), MPI_DOUBLE, 0, communicator);
@@ -275,7 +294,7 @@ namespace tanktread
 
 
   bool
-  NewtonSolver::follow_shell(const State &state, unsigned int &n_moves)
+  NewtonSolver::follow_shell(State &state, unsigned int &n_moves)
   {
     // Positions within a small part of a cell, which shrinks with the solver's tolerance, are as good as any. A node of the fluid that changes sides makes the residual jump, and now and
     // then shell and node would chase each other for ever: then a larger part has to do.
@@ -284,7 +303,7 @@ namespace tanktread
     const bool             moves     = trial_points() == Points::stay && coupling_.distance(state.x) > tolerance;
     const bool             mixes     = viscosity_ratio_ != 1. && (state.x - viscosity_x_).rowwise().norm().maxCoeff() > tolerance;
     if (moves)
-      coupling_.move(state.x, volume_gradient(surface_, state.x));
+      move_points(state);
     if (mixes)
       set_viscosity(state.x);
     n_moves += moves || mixes;
@@ -317,7 +336,7 @@ namespace tanktread
             if (report.newton_iterations == parameters_.max_newton_iterations)
               throw NumericalError("no convergence in " + std::to_string(report.newton_iterations) + " Newton iterations");
             if (trial_points() == Points::follow && !report.step_lengths.empty() && report.step_lengths.back() < 1.)
-              coupling_.move(trial.x, volume_gradient(surface_, trial.x)); // where a rejected trial has left it
+              move_points(trial); // where a rejected trial has left it
             const bool near = length < 0.25 * finest_cell();
             if (near && !cautious && tangent_ == Tangent::positive)
               use(Tangent::exact);

@@ -185,12 +185,18 @@ TEST(Coupling, SameOnAnyNumberOfRanks)
 
 TEST(Coupling, QuadratureFollowsTheFluidCell)
 {
-  const FittedShape  shape  = make_capsule({}, 2);
-  const unsigned int coarse = coupling_subdivisions(shape.topology, shape.control_points, 3, 0.5);
-  const unsigned int fine   = coupling_subdivisions(shape.topology, shape.control_points, 3, 0.0625);
-  EXPECT_EQ(coarse, 0u);
-  const SubdivisionSurface surface(shape.topology, triangle_quadrature(3, fine), Derivatives::first);
-  EXPECT_LE(std::sqrt(area_weights(surface, shape.control_points).maxCoeff()), 0.52 * 0.0625);
+  const FittedShape shape = make_capsule({}, 2);
+  EXPECT_EQ(coupling_quadrature(shape.topology, shape.control_points, Interface::plain, 0.5).weights.size(), 3);
+  std::size_t last = 3;
+  for (const double h : {0.25, 0.125, 0.0625})
+    for (const Interface interface : {Interface::plain, Interface::enriched})
+      {
+        const TriangleQuadrature rule = coupling_quadrature(shape.topology, shape.control_points, interface, h);
+        const SubdivisionSurface surface(shape.topology, rule, Derivatives::first);
+        EXPECT_LE(std::sqrt(area_weights(surface, shape.control_points).mean()), (interface == Interface::plain ? 0.5 : 0.3) * h);
+        EXPECT_GE(std::size_t(rule.weights.size()), last);
+        last = rule.weights.size();
+      }
 }
 
 

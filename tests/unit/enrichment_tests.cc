@@ -46,7 +46,7 @@ namespace
       : h(10. / cells)
       , shape(make_capsule(capsule, std::lround(std::log2(cells / 8.))))
       , surface(shape.topology, triangle_quadrature(3), Derivatives::first)
-      , coupling_surface(shape.topology, triangle_quadrature(3, coupling_subdivisions(shape.topology, shape.control_points, 3, 0.5 * h)), Derivatives::second)
+      , coupling_surface(shape.topology, coupling_quadrature(shape.topology, shape.control_points, Interface::enriched, h), Derivatives::second)
       , coupling(coupling_surface, area_weights(coupling_surface, shape.control_points), interface)
       , shell(surface, {}, {0., 0.}, shape.control_points)
       , distributed(shell, shape.topology, MPI_COMM_WORLD)

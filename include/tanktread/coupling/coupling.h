@@ -70,13 +70,17 @@ namespace tanktread
     std::vector<dealii::Point<3>>
     points(const ControlPoints &x) const;
 
+    /** P f as the enrichment needs it, for several of the calls below; nothing with the plain interface. Collective. */
+    void
+    extend(const ControlPoints &f, ExtendedForces &forces) const;
+
     /** M J fields: S^T W Phi u, and what the enrichment adds. */
     ControlPoints
     velocity_moments(const FluidBlockVector &fields) const;
 
-    /** M (J fields + Q f). */
+    /** M (J fields + Q f), f being extended. */
     ControlPoints
-    velocity_moments(const FluidBlockVector &fields, const ControlPoints &f) const;
+    velocity_moments(const FluidBlockVector &fields, const ExtendedForces &f) const;
 
     /** J fields. */
     ControlPoints
@@ -85,6 +89,8 @@ namespace tanktread
     /** J fields + Q f: the shell's part of the velocity that nodal forces f make. */
     ControlPoints
     interpolate(const FluidBlockVector &fields, const ControlPoints &f) const;
+    ControlPoints
+    interpolate(const FluidBlockVector &fields, const ExtendedForces &f) const;
 
     /** grad u at the points of this rank, from inside the cells that they lie in. */
     VelocityGradients
@@ -93,6 +99,13 @@ namespace tanktread
     /** M^{-1} f: control points of the force density per reference area. */
     ControlPoints
     density(const ControlPoints &f) const;
+
+    /**
+     * Adds to the pressure of `fields` what it jumps where the shell with nodal forces f has passed a vertex of the mesh since `sides`, which becomes the sides at move(). Nothing if `sides` is empty, and with the plain
+     * interface. Collective.
+     */
+    void
+    carry_pressure(const ControlPoints &f, VertexSides &sides, FluidBlockVector &fields) const;
 
     Interface
     interface() const
@@ -107,6 +120,10 @@ namespace tanktread
     /** load += R f. */
     void
     spread(const ControlPoints &f, FluidBlockVector &load) const;
+
+    /** load += factor R f, where f and `forces` may differ by a multiple of v. */
+    void
+    spread(double factor, const ControlPoints &f, const ExtendedForces &forces, FluidBlockVector &load) const;
 
     /**
      * load += R f + sum_q w_q (S dx)_q . grad Phi(X_q) (S g)_q, plain interface only, the second term being the change of R f0 when the shell moves by dx.
@@ -139,7 +156,7 @@ namespace tanktread
   private:
     /** M (J fields + Q f), the latter unless null. */
     ControlPoints
-    all_moments(const FluidBlockVector &fields, const ControlPoints *f) const;
+    all_moments(const FluidBlockVector &fields, const ExtendedForces *f) const;
 
     /** S^T W values, summed over the ranks. */
     ControlPoints
@@ -148,10 +165,6 @@ namespace tanktread
     /** Forces at the local points of a density given by its control points. */
     void
     set_point_forces(const ControlPoints &density, std::vector<double> &forces) const;
-
-    /** Makes enriched_forces_, those of f, those of P f. */
-    void
-    project(const ControlPoints &f) const;
 
     /** Consecutive local points [begin, end) in one face. */
     struct FacePoints
@@ -182,16 +195,16 @@ namespace tanktread
     std::vector<dealii::Point<3>> points_;
     mutable ControlPoints         density_;
     std::vector<double>           normal_forces_; // of the density m, at the local points
-    mutable std::vector<double>   values_, moments_, enriched_forces_, enriched_values_;
+    mutable std::vector<double>   values_, moments_, enriched_values_;
     mutable std::vector<Vector4>  face_;
   };
 
   /**
-   * Points per face (as subdivisions of a triangle rule with `points_per_face` points) that bring the points of the surface x closer than half a cell of size h:
-   * the smallest n for which the largest area of a point, estimated as 4^-n of that of the undivided rule, is below (h/2)^2.
+   * The rule with the fewest points, 3 or 6 times a power of four a face, whose points on the surface x are close enough for a fluid mesh with finest cells of size h: half a cell from each other, 0.3 cells with the
+   * enriched interface, for which the velocity has a kink there (doc/theory.md, section 4.4). A point's distance is taken as the root of the largest area of one.
    */
-  unsigned int
-  coupling_subdivisions(const TriangleMesh &topology, const ControlPoints &x, unsigned int points_per_face, double h);
+  TriangleQuadrature
+  coupling_quadrature(const TriangleMesh &topology, const ControlPoints &x, Interface interface, double h);
 } // namespace tanktread
 
 #endif

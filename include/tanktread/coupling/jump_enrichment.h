@@ -11,6 +11,16 @@
 
 namespace tanktread
 {
+  /** On which side of the shell the pressure's owned unknowns lie: -1 inside, 1 outside, 0 where that is not known, farther from the shell than a cell. Empty: nowhere. */
+  using VertexSides = std::vector<signed char>;
+
+  /** Forces of the shell as the enrichment needs them. */
+  struct ExtendedForces
+  {
+    std::vector<double>           at_points;   // force times area at the local points, 3 numbers each
+    dealii::AlignedVector<double> at_vertices; // f_t and f_n at the vertices of this rank's cells
+  };
+
   /**
    * Forces f per area on the shell bend the velocity, mu [du/dn] = -f_t, and break the pressure, [p] = f_n (outside minus inside), inside cells that finite elements cannot follow. So velocity and
    * pressure are sought as u_h + psi, p_h + eta with
@@ -41,13 +51,31 @@ namespace tanktread
     void
     move(std::vector<QuadraticPatch> patches, const Eigen::VectorXd &area_weights, const PointInterpolation &points);
 
-    /** load += R f without <f, v>. @param forces at the local points of `points`, f times area, 3 numbers each. Collective. */
+    /** Makes forces.at_vertices from forces.at_points, in the order of `points`. Collective. */
     void
-    add_load(const std::vector<double> &forces, FluidBlockVector &load) const;
+    extend(ExtendedForces &forces) const;
+
+    /** load += factor R f without <f, v>. Collective. */
+    void
+    add_load(const ExtendedForces &forces, double factor, FluidBlockVector &load) const;
 
     /** values += (R^T fields without the values of u_h) + Q forces at the local points, the latter unless null. Collective. */
     void
-    add_velocities(const FluidBlockVector &fields, const std::vector<double> *forces, std::vector<double> &values) const;
+    add_velocities(const FluidBlockVector &fields, const ExtendedForces *forces, std::vector<double> &values) const;
+
+    /** Sides since move(). */
+    const VertexSides &
+    sides() const
+    {
+      return sides_;
+    }
+
+    /**
+     * Adds to p_h at the vertices that have changed sides since `sides` what the pressure jumps there, (i_new - i_old) eta_j: the nodal values of p_h are those of the pressure, which a vertex that
+     * the shell has passed finds on the other side. Afterwards `sides` is sides(). Collective.
+     */
+    void
+    carry_pressure(const ExtendedForces &forces, VertexSides &sides, FluidBlockVector &fields) const;
 
     unsigned int
     n_cut_cells() const
@@ -89,6 +117,8 @@ namespace tanktread
     void
     find_cut_cells(const SurfaceDistance &distance);
     void
+    set_sides(const std::vector<double> &phi);
+    void
     add_cut_cell(unsigned int cell, const NodeDistances &nodes);
     void
     set_weights(const Eigen::VectorXd &area_weights);
@@ -101,9 +131,6 @@ namespace tanktread
     /** Sums over cells and ranks become averages with the weights, known at all vertices of this rank's cells. */
     void
     average() const;
-    /** f_t and f_n at the vertices. */
-    void
-    extend(const std::vector<double> &forces) const;
     void
     add_self_response(const CutCell &cut, const VertexForces &f, const std::vector<double> &forces, VertexForces &r, std::vector<double> &values) const;
     void
@@ -118,13 +145,15 @@ namespace tanktread
     std::vector<double>                   pressure_integrals_; // of the pressure functions, owned ones
     const PointInterpolation             *points_ = nullptr;
     std::vector<CutCell>                  cut_cells_;
+    std::vector<unsigned int>             nearby_cells_; // whose nodes' distances are known
+    VertexSides                           sides_;
     std::vector<PointGroup>               groups_; // by cell, ascending
     std::vector<unsigned int>             group_of_cell_;
     std::vector<unsigned int>             point_order_;
     std::vector<std::array<double, 8>>    hats_, psi_; // of points, in that order: M_v, and psi_v on the shell (in cut cells)
     std::vector<Vector4>                  normals_;    // in that order
     std::vector<double>                   inverse_weights_;
-    mutable dealii::AlignedVector<double> extension_values_, self_values_, pressure_values_;
+    mutable dealii::AlignedVector<double> extension_values_, pressure_values_;
   };
 } // namespace tanktread
 

@@ -35,7 +35,7 @@ namespace tanktread
     renew(const SparseMatrix &Z, const Eigen::Matrix3d &flow_gradient, const SparseMatrix &K_pi, double tau);
 
     /**
-     * To be told about every linear solve with this operator. It is worn out when one takes more than 1.1 times the iterations that a decade took in the first, and 1 more: an
+     * To be told about every linear solve with this operator. It is worn out when one takes more than 1.1 times the iterations that a decade took in the best solve so far, and 1 more: an
      * iteration costs several factorisations where the fluid has many unknowns a rank.
      */
     void
@@ -68,7 +68,7 @@ namespace tanktread
     bool               first_rank_;
     double             tau_                   = 0.; // 0: there is no operator
     bool               worn_out_              = false;
-    double             iterations_per_decade_ = 0.; // of the first linear solve; 0: there was none
+    double             iterations_per_decade_ = 0.; // of the best linear solve; 0: there was none
     unsigned int       n_renewals_            = 0;
     SparseMatrix       Z_;
     Eigen::Matrix3d    drift_; // 1 - tau grad u_inf

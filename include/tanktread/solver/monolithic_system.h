@@ -56,6 +56,7 @@ namespace tanktread
     const StokesOperator  &stokes_;
     const LinearisedShell &shell_;
     Timings *const         timings_;
+    mutable ExtendedForces forces_;
   };
 
   /**

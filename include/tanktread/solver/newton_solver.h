@@ -102,6 +102,10 @@ namespace tanktread
     double
     dissipation(const State &state) const;
 
+    /** Makes the pressure of `state` that of the sides on which the coupling's points have the vertices; a state of another time can then be combined with those of the present. Collective. */
+    void
+    carry_pressure(State &state) const;
+
     const ImplicitShell &
     implicit_shell() const
     {
@@ -116,8 +120,11 @@ namespace tanktread
       stay
     };
 
+    /** Points::follow moves the points to state.x, and carries the pressure over. */
+    void
+    move_points(State &state);
     Residual
-    residual(const State &state, const ControlPoints &xhat, double tau, Points points);
+    residual(State &state, const ControlPoints &xhat, double tau, Points points);
     /** What line search does with the points: those of the enriched interface stay, at fixed positions J is the transpose of R and the linear system their exact derivative. */
     Points
     trial_points() const;
@@ -125,7 +132,7 @@ namespace tanktread
      * With the enriched interface or another viscosity inside: moves points and viscosity after the shell unless they are close enough, so that no solution is accepted with them elsewhere. Returns true if they moved.
      */
     bool
-    follow_shell(const State &state, unsigned int &n_moves);
+    follow_shell(State &state, unsigned int &n_moves);
     /** Viscosity of a shell at x, and the load of the undisturbed flow with it. */
     void
     set_viscosity(const ControlPoints &x);

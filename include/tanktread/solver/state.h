@@ -4,7 +4,7 @@
 #ifndef tanktread_solver_state_h
 #define tanktread_solver_state_h
 
-#include <tanktread/fluid/types.h>
+#include <tanktread/coupling/jump_enrichment.h>
 #include <tanktread/surface/types.h>
 
 namespace tanktread
@@ -42,6 +42,7 @@ namespace tanktread
     ControlPoints    x;                  // control points, NP x 3, in a
     ControlPoints    force;              // F, NP x 3
     FluidBlockVector fluid;              // disturbance velocity (blocks 0-2) and pressure (block 3), condensed: constrained entries are zero
+    VertexSides      sides;              // on which side of the shell the pressure's vertices were, see Coupling::carry_pressure()
     double           volume_shift  = 0.; // sigma: displacement along m = M^{-1} dV/dx, in a, that undoes the volume error of the time scheme
     double           pressure_jump = 0.; // pi: pressure of the capsule's interior above that of the continuous field
   };
