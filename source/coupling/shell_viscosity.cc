@@ -66,26 +66,6 @@ namespace tanktread
       const SurfaceDistance &distance_;
       std::vector<Side>      sides_;
     };
-
-
-    /** Values of a quadratic function at the 27 Gauss points from those at the 27 nodes. */
-    std::array<double, 27>
-    at_gauss_points(std::array<double, 27> values)
-    {
-      for (const unsigned int stride : {1, 3, 9})
-        for (unsigned int line = 0; line < 9; ++line)
-          {
-            const unsigned int start = stride == 1 ? 3 * line : stride == 3 ? 9 * (line / 3) + line % 3 : line;
-            double *const      v     = &values[start];
-            const double       a = v[0], b = v[stride], c = v[2 * stride];
-            for (unsigned int q = 0; q < 3; ++q)
-              {
-                const double x = gauss_abscissae()[q];
-                v[q * stride]  = (1. - x) * (1. - 2. * x) * a + 4. * x * (1. - x) * b + x * (2. * x - 1.) * c;
-              }
-          }
-      return values;
-    }
   } // namespace
 
 
@@ -108,7 +88,9 @@ namespace tanktread
   Viscosity
   ShellViscosity::operator()(const SurfaceDistance &distance, const double ratio) const
   {
+    const double        least = std::min(1., ratio);
     const Sides         sides(distance);
+    CutCells            cut;
     const LatticeBlock &block = distance.block();
     const int           n     = space_.mesh.n_rung_0() << space_.mesh.finest_level();
     const NodeSpace    &nodes = *space_.velocity;
@@ -144,10 +126,17 @@ namespace tanktread
               value = distance.at({2 * centre[0] + a % 3, 2 * centre[1] + a / 3 % 3, 2 * centre[2] + a / 9});
             distances[a] = value;
           }
-        distances = at_gauss_points(distances);
-        for (unsigned int q = 0; q < 27; ++q)
-          values[q] = distances[q] < 0. ? ratio : 1.;
+        const auto n_inside = std::count_if(distances.begin(), distances.end(), [](const double d) { return d < 0.; });
+        std::fill(values, values + 27, n_inside == 27 ? ratio : n_inside == 0 ? 1. : least);
+        if (n_inside == 0 || n_inside == 27)
+          continue;
+        for (double &d : distances)
+          d /= nodes.cell_sizes()[i];
+        const CellWeights inside = inside_weights(distances), &whole = whole_weights();
+        cut.cells.push_back(i);
+        for (unsigned int q = 0; q < 125; ++q)
+          cut.weights.push_back(ratio > 1. ? (ratio - 1.) * inside[q] : (1. - ratio) * (whole[q] - inside[q]));
       }
-    return {std::move(mu), std::min(1., ratio)};
+    return {std::move(mu), least, std::move(cut)};
   }
 } // namespace tanktread

@@ -492,6 +492,99 @@ namespace tanktread
     };
 
 
+    // ---- Strain form with weights at 5 x 5 x 5 points ----
+
+    template <typename Number>
+    struct FineGaussMatrices
+    {
+      Number value[5][3], derivative[5][3];
+    };
+    template <typename Number>
+    TANKTREAD_INLINE constexpr FineGaussMatrices<Number>
+    fine_gauss_matrices()
+    {
+      const double              x[5]     = {0.04691007703066800, 0.23076534494715845, 0.5, 0.76923465505284155, 0.95308992296933200};
+      FineGaussMatrices<Number> matrices = {};
+      for (int q = 0; q < 5; ++q)
+        {
+          matrices.value[q][0]      = (1 - x[q]) * (1 - 2 * x[q]);
+          matrices.value[q][1]      = 4 * x[q] * (1 - x[q]);
+          matrices.value[q][2]      = x[q] * (2 * x[q] - 1);
+          matrices.derivative[q][0] = 4 * x[q] - 3;
+          matrices.derivative[q][1] = 4 - 8 * x[q];
+          matrices.derivative[q][2] = 4 * x[q] - 1;
+        }
+      return matrices;
+    }
+
+
+    /** out = matrix (or its transpose) applied along the middle one of three indices, of which n_left is the fastest; adds if `add`. */
+    template <typename Number, int n_left, int n_right, bool transpose, bool add, typename V>
+    TANKTREAD_INLINE void
+    along_middle(const Number (&matrix)[5][3], const V *in, V *out)
+    {
+      constexpr int n_in = transpose ? 5 : 3, n_out = transpose ? 3 : 5;
+      for (int right = 0; right < n_right; ++right)
+        for (int left = 0; left < n_left; ++left)
+          for (int i = 0; i < n_out; ++i)
+            {
+              V sum{};
+              for (int k = 0; k < n_in; ++k)
+                sum += (transpose ? matrix[k][i] : matrix[i][k]) * in[(right * n_in + k) * n_left + left];
+              V &result = out[(right * n_out + i) * n_left + left];
+              result    = add ? result + sum : sum;
+            }
+    }
+
+
+    template <typename Number, int n_cubes>
+    struct WeightedViscous
+    {
+      const Number *weights, *u;
+      Number       *y;
+
+      TANKTREAD_INLINE void
+      operator()(const double *size, const unsigned int *nodes, const unsigned int *, const unsigned int first_cube) const
+      {
+        using V                                    = Lanes<Number, n_cubes>;
+        constexpr FineGaussMatrices<Number> matrix = fine_gauss_matrices<Number>();
+        const V                             h      = sizes<Number, n_cubes>(size, 1);
+        V                                   v[27], a[45], b[75], g_x[125], g_y[125], g_z[125];
+        for (int i = 0; i < 27; ++i)
+          v[i] = gather<Number, n_cubes>(u, nodes + i);
+        along_middle<Number, 1, 9, false, false>(matrix.derivative, v, a);
+        along_middle<Number, 5, 3, false, false>(matrix.value, a, b);
+        along_middle<Number, 25, 1, false, false>(matrix.value, b, g_x);
+        along_middle<Number, 1, 9, false, false>(matrix.value, v, a);
+        along_middle<Number, 5, 3, false, false>(matrix.derivative, a, b);
+        along_middle<Number, 25, 1, false, false>(matrix.value, b, g_y);
+        along_middle<Number, 5, 3, false, false>(matrix.value, a, b);
+        along_middle<Number, 25, 1, false, false>(matrix.derivative, b, g_z);
+        for (int q = 0; q < 125; ++q)
+          {
+            Number weight[n_cubes];
+            for (int cube = 0; cube < n_cubes; ++cube)
+              weight[cube] = weights[125 * std::size_t(first_cube + cube) + q];
+            const V factor = h * in_components<Number, n_cubes>(weight);
+            const V x = g_x[q], y = g_y[q], z = g_z[q];
+            g_x[q] = factor * (x + transposed<Number, n_cubes, 0>(x, y, z));
+            g_y[q] = factor * (y + transposed<Number, n_cubes, 1>(x, y, z));
+            g_z[q] = factor * (z + transposed<Number, n_cubes, 2>(x, y, z));
+          }
+        along_middle<Number, 25, 1, true, false>(matrix.derivative, g_z, b);
+        along_middle<Number, 5, 3, true, false>(matrix.value, b, a);
+        along_middle<Number, 25, 1, true, false>(matrix.value, g_y, b);
+        along_middle<Number, 5, 3, true, true>(matrix.derivative, b, a);
+        along_middle<Number, 1, 9, true, false>(matrix.value, a, v);
+        along_middle<Number, 25, 1, true, false>(matrix.value, g_x, b);
+        along_middle<Number, 5, 3, true, false>(matrix.value, b, a);
+        along_middle<Number, 1, 9, true, true>(matrix.derivative, a, v);
+        for (int i = 0; i < 27; ++i)
+          scatter<Number, n_cubes>(y, nodes + i, v[i]);
+      }
+    };
+
+
     /** Runs `body` over the cubes, n_cubes at a time, and the rest one by one. */
     template <template <typename, int> class Body, typename Number, int n_cubes, typename... Arrays>
     TANKTREAD_INLINE void
@@ -608,6 +701,14 @@ namespace tanktread
 
   template <typename Number>
   void
+  add_weighted_viscous(const InstructionSet set, const Cubes &cubes, const Number *weights, const Number *u, Number *y)
+  {
+    run<WeightedViscous, Number>(set, cubes, weights, u, y);
+  }
+
+
+  template <typename Number>
+  void
   add_pressure_mass(const Cubes &cubes, const Number *p, Number *y_p)
   {
     // Along each direction the mass matrix of the unit interval is (1 + J)/6, J being all ones.
@@ -637,6 +738,7 @@ namespace tanktread
   template void add_stokes(InstructionSet, const Cubes &, const Number *, const Number *, Number *, Number *);                                 \
   template void add_pressure_gradient(InstructionSet, const Cubes &, const Number *, Number *);                                                \
   template void add_viscous(InstructionSet, const Cubes &, const Number *, const Number *, Number *);                                          \
+  template void add_weighted_viscous(InstructionSet, const Cubes &, const Number *, const Number *, Number *);                                 \
   template void add_viscous_stokes(InstructionSet, const Cubes &, const Number *, Number, const Number *, const Number *, Number *, Number *); \
   template void add_pressure_mass(const Cubes &, const Number *, Number *);
   TANKTREAD_INSTANTIATE(float)

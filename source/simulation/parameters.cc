@@ -33,14 +33,6 @@ namespace tanktread
     }
 
     void
-    check_interface(const SceneParameters &scene, const SolverParameters &solver)
-    {
-      if (scene.viscosity_ratio != 1. && solver.interface == Interface::enriched)
-        throw InputError("Solver/Interface is enriched; not available in this version with Scene/Viscosity ratio other than 1, allowed: plain");
-    }
-
-
-    void
     set(dealii::ParameterHandler &prm, const std::string &section, const std::string &name, const std::string &value)
     {
       prm.enter_subsection(section);
@@ -93,7 +85,6 @@ namespace tanktread
                                                        [&] { check_mesh_file(capsule); },
                                                        [&] { shell.check(); },
                                                        [&] { fluid_mesh.check(scene.box_side); },
-                                                       [&] { check_interface(scene, solver); },
                                                        [&] { output.check(); },
                                                        [&] { check_output_folder(output.directory); }};
 

@@ -338,8 +338,46 @@ TEST(Viscosity, ExcessStressIsTheStrainFormOfALinearFlow)
   EXPECT_GT(load.block(velocity_block).linfty_norm(), 0.1);
   load.block(velocity_block) -= Ax.block(velocity_block);
   EXPECT_LT(load.block(velocity_block).linfty_norm(), 1e-12);
-  // 6 times the volume of the sphere, by the rule of these cells.
-  EXPECT_NEAR(mu.excess(fluid.space()), 6. * 4. / 3. * dealii::numbers::PI, 0.3);
+}
+
+
+TEST(Viscosity, WeightsOfWholeCellsAreViscosityAtThePoints)
+{
+  Fluid fluid(MPI_COMM_WORLD, 2., cells(0.5, 0.125));
+  fluid.adapt(oracle::sphere_points(Point(0.9, 0.2, 0.1), 0.4));
+  const unsigned int  n = fluid.space().velocity->n_cells();
+  std::vector<double> with(27 * n, 1.), without(27 * n, 1.);
+  CutCells            cut;
+  for (unsigned int cell = 0; cell < n; cell += 3)
+    {
+      std::fill(&with[27 * cell], &with[27 * cell] + 27, 5.);
+      cut.cells.push_back(cell);
+      for (const double w : whole_weights())
+        cut.weights.push_back(4. * w);
+    }
+  FluidBlockVector x, y, difference;
+  for (auto *vector : {&x, &y, &difference})
+    fluid.space().reinit(*vector);
+  oracle::set_rough(fluid.mesh(), *fluid.space().velocity, 1, x.block(velocity_block));
+  dealii::Tensor<2, 3> gradient;
+  gradient[0][2]          = 1.;
+  gradient[1][0]          = 0.3;
+  const auto expect_equal = [&]() {
+    EXPECT_GT(y.block(velocity_block).linfty_norm(), 0.01);
+    difference -= y;
+    EXPECT_LT(difference.block(velocity_block).linfty_norm(), 1e-13 * y.block(velocity_block).linfty_norm());
+  };
+  const Viscosity a(with, 1.), b(without, 1., cut);
+  for (unsigned int cell = 0; cell < n; ++cell)
+    EXPECT_NEAR(a.means()[cell], b.means()[cell], 1e-13);
+  a.add_excess_stress(fluid.space(), gradient, y.block(velocity_block));
+  b.add_excess_stress(fluid.space(), gradient, difference.block(velocity_block));
+  expect_equal();
+  fluid.set_viscosity(a);
+  fluid.stokes().vmult(y, x);
+  fluid.set_viscosity(b);
+  fluid.stokes().vmult(difference, x);
+  expect_equal();
 }
 
 
@@ -379,7 +417,8 @@ TEST(Viscosity, IterationsOverTheRatio)
       Fluid       fluid(MPI_COMM_WORLD, 10., cells(1.25, finest));
       const Point centre(0.1, 0., -0.2);
       fluid.adapt(oracle::sphere_points(centre, 1.));
-      for (const auto &[ratio, allowed] : std::vector<std::pair<double, unsigned int>>{{0.01, 160}, {0.1, 45}, {0.2, 35}, {1., 13}, {5., 28}, {20., 52}, {100., 125}})
+      for (const auto &[ratio, allowed] :
+           std::vector<std::pair<double, unsigned int>>{{0.01, 160}, {0.1, 45}, {0.2, 35}, {1., 13}, {5., 28}, {20., 52}, {100., 125}})
         {
           fluid.set_viscosity(viscosity_from(fluid.mesh(), sphere(ratio, centre), std::min(1., ratio)));
           FluidBlockVector   x;

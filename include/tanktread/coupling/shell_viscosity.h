@@ -10,8 +10,8 @@
 namespace tanktread
 {
   /**
-   * Tells the cells inside the shell from those outside. In finest cells near the shell each Gauss point has the side of the signed distance there, interpolated from the 27 nodes; away from the shell the finest cells
-   * that the shell's neighbourhood separates from the rest of the box are inside.
+   * Tells the cells inside the shell from those outside. Cells that it cuts, where the distances of the 27 nodes have both signs, have the smaller viscosity and weights for what there is more on the side of the larger
+   * one, see inside_weights(). Of the other cells those are inside that the shell's neighbourhood separates from the rest of the box, or whose distances are negative.
    */
   class ShellViscosity
   {

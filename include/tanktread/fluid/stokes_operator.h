@@ -25,10 +25,7 @@ namespace tanktread
 
     /** @param viscosity kept by reference. */
     void
-    set_viscosity(const Viscosity &viscosity)
-    {
-      viscosity_ = &viscosity;
-    }
+    set_viscosity(const Viscosity &viscosity);
 
     /** dst = [A, -B^T; -B, 0] src on blocks 0 and 1; blocks from 2 on are not touched. Collective. */
     void
@@ -44,6 +41,8 @@ namespace tanktread
     const TaylorHoodSpace                &space_;
     const InstructionSet                  instructions_;
     const Viscosity                      *viscosity_ = nullptr; // null: 1 everywhere
+    std::vector<double>                   cut_sizes_;           // of its cut cells
+    std::vector<unsigned int>             cut_nodes_;           // 27 for each of them
     mutable dealii::AlignedVector<double> u_, p_, y_u_, y_p_;   // full arrays
   };
 

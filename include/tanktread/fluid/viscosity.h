@@ -4,6 +4,7 @@
 #ifndef tanktread_fluid_viscosity_h
 #define tanktread_fluid_viscosity_h
 
+#include <tanktread/fluid/cut_cell.h>
 #include <tanktread/fluid/taylor_hood_space.h>
 
 #include <array>
@@ -15,20 +16,32 @@ namespace tanktread
   const std::array<double, 3> &
   gauss_abscissae();
 
+  /** Cells in parts of which the viscosity is larger than elsewhere in them. */
+  struct CutCells
+  {
+    std::vector<unsigned int> cells;   // on this rank
+    std::vector<double>       weights; // 125 for each, see CellWeights, of the part with the larger viscosity times the difference
+  };
+
   /**
-   * Viscosity, in that of the outer liquid, at the points of the 3 x 3 x 3 Gauss rule of each cell of this rank. The strain form is integrated with these, preconditioners take the cells'
+   * Viscosity, in that of the outer liquid, at the points of the 3 x 3 x 3 Gauss rule of each cell of this rank, and what there is more in cut cells. The strain form is integrated with these, preconditioners take the cells'
    * means.
    */
   class Viscosity
   {
   public:
-    /** @param at_points 27 positive numbers a cell, x fastest. @param least not larger than any of them, the same on all ranks. */
-    Viscosity(std::vector<double> at_points, double least);
+    /** @param at_points 27 positive numbers a cell, x fastest. @param least not larger than any of them, the same on all ranks. @param cut what to add to `at_points`. */
+    Viscosity(std::vector<double> at_points, double least, CutCells cut = {});
 
     const std::vector<double> &
     at_points() const
     {
       return at_points_;
+    }
+    const CutCells &
+    cut() const
+    {
+      return cut_;
     }
     double
     least() const
@@ -50,13 +63,10 @@ namespace tanktread
     void
     add_excess_stress(const TaylorHoodSpace &space, const dealii::Tensor<2, 3> &gradient, FluidVector &y) const;
 
-    /** Integral of viscosity - 1 over the box. Collective. */
-    double
-    excess(const TaylorHoodSpace &space) const;
-
   private:
     std::vector<double> at_points_, means_;
     double              least_;
+    CutCells            cut_;
   };
 } // namespace tanktread
 

@@ -52,7 +52,7 @@ namespace tanktread
    * nodes, which changes the vector much and the flow little.)
    *
    * With another viscosity inside, A is the strain form with it, and the undisturbed flow has the load -2 ((mu - 1) eps(u_inf), eps(v)). The viscosity stays while the linear system is solved and during line search; after an
-   * iteration it follows the shell as the points of the enriched interface do.
+   * iteration it follows the shell as the points of the enriched interface do. So does what the viscosities contribute to the jumps of that interface (JumpEnrichment), which after some sweeps stays for the rest of the step.
    */
   class NewtonSolver
   {
@@ -129,13 +129,17 @@ namespace tanktread
     Points
     trial_points() const;
     /**
-     * With the enriched interface or another viscosity inside: moves points and viscosity after the shell unless they are close enough, so that no solution is accepted with them elsewhere. Returns true if they moved.
+     * With the enriched interface or another viscosity inside: moves points and viscosity after the shell unless they are close enough, so that no solution is accepted with them elsewhere, and makes the viscous part of the
+     * jumps that of the present flow. Returns true if anything has changed.
      */
     bool
-    follow_shell(State &state, unsigned int &n_moves);
+    follow_shell(State &state, unsigned int &n_moves, unsigned int &n_sweeps);
     /** Viscosity of a shell at x, and the load of the undisturbed flow with it. */
     void
     set_viscosity(const ControlPoints &x);
+    /** solve_flow() with the viscous part of the jumps as it is. Returns the linear iterations. */
+    unsigned int
+    solve_with_fixed_jumps(State &state, Points points);
     /** Part of the norm that needs no linearisation. */
     double
     speed(const Residual &r, double tau) const;
