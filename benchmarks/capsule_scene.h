@@ -21,14 +21,16 @@ namespace tanktread
   /** What Simulation makes of the parameters, and a deformed shape. */
   struct Scene
   {
-    explicit Scene(const unsigned int cells)
+    explicit Scene(const unsigned int cells, const Interface interface = Interface::plain)
       : shape(make_capsule({}, std::max(1l, std::lround(std::log2(cells / 8.)))))
       , surface(shape.topology, triangle_quadrature(3), Derivatives::second)
       , shell(surface, {}, {1. / shear_number, reduced_bending / shear_number}, shape.control_points)
       , mesh_parameters{box_side / cells, 2.5, 1.5}
       , fluid(MPI_COMM_WORLD, box_side, mesh_parameters)
-      , coupling_surface(shape.topology, coupling_quadrature(shape.topology, shape.control_points, Interface::plain, box_side / cells), Derivatives::first)
-      , coupling(coupling_surface, area_weights(coupling_surface, shape.control_points))
+      , coupling_surface(shape.topology,
+                         coupling_quadrature(shape.topology, shape.control_points, interface, box_side / cells),
+                         interface == Interface::plain ? Derivatives::first : Derivatives::second)
+      , coupling(coupling_surface, area_weights(coupling_surface, shape.control_points), interface)
       , volume(enclosed_volume(surface, shape.control_points))
       , distributed_shell(shell, shape.topology, MPI_COMM_WORLD)
       , solver(parameters, distributed_shell, surface, coupling, volume, flow, timings)
@@ -45,7 +47,7 @@ namespace tanktread
     {
       fluid.adapt(coupling.points(x));
       solver.attach(fluid);
-      coupling.move(x);
+      coupling.move(x, volume_gradient(surface, x));
     }
 
     SolverParameters      parameters;
@@ -98,6 +100,7 @@ namespace tanktread
       State guess = state_;
       if (has_previous())
         {
+          scene_.solver.carry_pressure(previous_);
           guess.x += state_.x - previous_.x;
           guess.force += state_.force - previous_.force;
           guess.pressure_jump += state_.pressure_jump - previous_.pressure_jump;

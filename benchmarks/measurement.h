@@ -56,7 +56,7 @@ namespace tanktread
   {
     std::string mesh;
     double      n_cells = 0.;
-    Entries     problem, algebraic, solves_at_sphere, solves, steps;
+    Entries     problem, algebraic, solves_at_sphere, solves, steps, enriched_steps;
   };
 
 

@@ -88,11 +88,13 @@ def load(folder, name, reader):
 # ------------------------------------------------------------------------------------------------------------------- references
 SCENE = {  # key in a reference file: (parameter of a run, its value where the run's file does not say)
     "flow": ("Scene/Flow", "shear"),
-    "G": ("Scene/Shear number G", None),
-    "khat": ("Scene/Reduced bending modulus", None),
+    "G": ("Scene/Shear number G", "0.05"),
+    "khat": ("Scene/Reduced bending modulus", "0"),
     "viscosity ratio": ("Scene/Viscosity ratio", "1"),
     "shape": ("Capsule/Shape", "sphere"),
-    "axes": ("Capsule/Axes", None),
+    "axes": ("Capsule/Axes", "2, 2, 1"),
+    "aspect ratio": ("Capsule/Aspect ratio", "0.6"),
+    "inclination": ("Capsule/Inclination", "0"),
     "membrane law": ("Capsule/Membrane law", "neo-Hookean"),
     "bending form": ("Capsule/Bending form", "variational"),
     "reference curvature": ("Capsule/Reference curvature", "flat"),
@@ -136,7 +138,7 @@ def find_references(parameters):
     if not found:
         print("reference: no file in benchmarks/reference has this scene")
     for file in found:
-        if file.name.startswith("relaxation"):
+        if file.name.startswith("relaxation") and parameters.get("Capsule/Membrane law") != "none":
             print("reference: the shell only bends there (E h = 0); a finite reduced bending modulus keeps membrane tension")
     return found
 

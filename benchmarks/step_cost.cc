@@ -175,7 +175,7 @@ namespace
 
 
   void
-  measure_steps(Scene &scene, const double dt, Measurement &result)
+  measure_steps(Scene &scene, const double dt, Entries &result)
   {
     constexpr unsigned int n_warm_up = 3, n_measured = 5;
     Stepping               stepping(scene, dt);
@@ -198,11 +198,11 @@ namespace
         linear += report.linear_iterations;
       }
     std::sort(times.begin(), times.end());
-    result.steps = {{"Newton iterations", formatted("%.1f", newton / n_measured), 0.},
-                    {"linear iterations", formatted("%.1f", linear / n_measured), 0.},
-                    seconds("step", times[n_measured / 2])};
+    result = {{"Newton iterations", formatted("%.1f", newton / n_measured), 0.},
+              {"linear iterations", formatted("%.1f", linear / n_measured), 0.},
+              seconds("step", times[n_measured / 2])};
     for (const Entry &share : shares(timings, total))
-      result.steps.push_back(share);
+      result.push_back(share);
   }
 
 
@@ -229,10 +229,13 @@ namespace
     scene.refine_around(scene.shape.control_points);
     result.solves_at_sphere = measure_implicit_solves(scene, "sphere", scene.shape.control_points, Tangent::exact, dt);
     progress(result.solves_at_sphere);
-    measure_steps(scene, dt, result);
+    measure_steps(scene, dt, result.steps);
     const double memory = peak_memory();
     result.steps.push_back({"peak memory, GB", formatted("%.2f", memory), memory});
     progress(result.steps);
+    Scene enriched(cells, Interface::enriched);
+    measure_steps(enriched, dt, result.enriched_steps);
+    progress(result.enriched_steps);
     return result;
   }
 
@@ -304,7 +307,8 @@ namespace
              "The same at the deformed shell, compressed in two directions, with the positive tangent, to which Newton's method resorts where the exact one is indefinite:",
              all,
              &Measurement::solves)
-        << table("Steps of backward Euler, dt = " + dt + ", and the shares of their time; the first five within the linear solver:", all, &Measurement::steps);
+        << table("Steps of backward Euler, dt = " + dt + ", and the shares of their time; the first five within the linear solver:", all, &Measurement::steps)
+        << table("The same with the enriched interface:", all, &Measurement::enriched_steps);
     if (all.size() > 1)
       std::cout << table_of_exponents(all);
   }

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
 #include <string>
 
 namespace tanktread
@@ -143,7 +144,7 @@ namespace tanktread
     : surface_(surface)
     , parameters_(parameters)
     , moduli_(moduli)
-    , n_rows_(moduli.bending_modulus > 0. ? 5 : 2)
+    , n_rows_(moduli.bending_modulus > 0. || parameters.thickness > 0. ? 5 : 2)
     , all_faces_(surface.n_faces())
     , reference_metric_(surface.n_points())
     , reference_weights_(area_weights(surface, reference))
@@ -159,13 +160,40 @@ namespace tanktread
     for (unsigned int q = 0; q < surface.n_points(); ++q)
       reference_metric_[q] = ReferenceMetric(Metric{a_1.row(q).squaredNorm(), a_1.row(q).dot(a_2.row(q)), a_2.row(q).squaredNorm()});
 
-    if (n_rows_ == 5)
+    if (moduli.bending_modulus > 0.)
+      set_reference_curvature(reference);
+    if (parameters.thickness > 0.)
+      set_thick_reference(reference);
+  }
+
+
+  void
+  Shell::set_reference_curvature(const ControlPoints &reference)
+  {
+    const Eigen::VectorXd curvature = mean_curvature(surface_, reference); // also makes sure that the surface has second derivatives
+    if (parameters_.reference == ReferenceCurvature::initial)
+      reference_curvature_ = curvature;
+    else if (parameters_.reference == ReferenceCurvature::value)
+      reference_curvature_.setConstant(parameters_.reference_curvature_value);
+  }
+
+
+  void
+  Shell::set_thick_reference(const ControlPoints &reference)
+  {
+    if (surface_.derivatives() != Derivatives::second)
+      throw std::logic_error("A shell of finite thickness needs a surface with second derivatives.");
+    const ControlPoints rows[5] = {surface_.S_1() * reference,
+                                   surface_.S_2() * reference,
+                                   surface_.S_11() * reference,
+                                   surface_.S_12() * reference,
+                                   surface_.S_22() * reference};
+    for (unsigned int q = 0; q < surface_.n_points(); ++q)
       {
-        const Eigen::VectorXd curvature = mean_curvature(surface, reference); // also makes sure that the surface has second derivatives
-        if (parameters.reference == ReferenceCurvature::initial)
-          reference_curvature_ = curvature;
-        else if (parameters.reference == ReferenceCurvature::value)
-          reference_curvature_.setConstant(parameters.reference_curvature_value);
+        SurfaceDerivatives y;
+        for (unsigned int p = 0; p < 5; ++p)
+          y.row(p) = rows[p].row(q);
+        thick_reference_.emplace_back(y, parameters_.thickness);
       }
   }
 
@@ -173,8 +201,17 @@ namespace tanktread
   MembraneDensity
   Shell::membrane(const Metric &metric, const unsigned int point) const
   {
+    if (parameters_.law == MembraneLaw::none)
+      return {0., Eigen::Vector3d::Zero(), Eigen::Matrix3d::Zero()};
     return parameters_.law == MembraneLaw::skalak ? skalak(metric, reference_metric_[point], moduli_.surface_shear_modulus(), parameters_.area_dilatation)
                                                   : neo_hookean(metric, reference_metric_[point], moduli_.surface_shear_modulus());
+  }
+
+
+  ThickDensity
+  Shell::thick(const SurfaceDerivatives &y, const Metric &metric, const unsigned int point, const bool with_hessian) const
+  {
+    return thick_neo_hookean(metric, CurvatureTensor(y), thick_reference_[point], moduli_.surface_young_modulus, with_hessian);
   }
 
 
@@ -201,9 +238,15 @@ namespace tanktread
         SurfaceDerivativesTangent *hessian  = with_tangent ? &buffers.hessians[k] : nullptr;
         if (n_rows_ == 5)
           {
-            SurfaceDerivatives                                       by_y;
+            const SurfaceDerivatives                                 y    = derivatives(buffers.y, k);
+            SurfaceDerivatives                                       by_y = SurfaceDerivatives::Zero();
             Eigen::Map<SurfaceDerivatives, 0, Eigen::OuterStride<4>> padded(gradient);
-            bending(derivatives(buffers.y, k), surface_.weights()[point] * moduli_.bending_modulus, reference_curvature_[point], by_y, hessian);
+            if (moduli_.bending_modulus > 0.)
+              bending(y, surface_.weights()[point] * moduli_.bending_modulus, reference_curvature_[point], by_y, hessian);
+            else if (with_tangent)
+              hessian->setZero();
+            if (is_thick())
+              add_derivatives(thick(y, metric, point, with_tangent), reference_weights_[point], y, by_y, hessian);
             padded = by_y;
           }
         else
@@ -212,6 +255,8 @@ namespace tanktread
             if (with_tangent)
               hessian->topLeftCorner<6, 6>().setZero();
           }
+        if (is_thick() || parameters_.law == MembraneLaw::none)
+          continue;
         const MembraneDensity w   = membrane(metric, point);
         const Eigen::Vector3d a_1 = vector(buffers.y, k * n_rows_), a_2 = vector(buffers.y, k * n_rows_ + 1);
         add_membrane_gradient(w, reference_weights_[point], a_1, a_2, gradient);
@@ -240,9 +285,11 @@ namespace tanktread
         load_face(face, x, buffers);
         for (unsigned int k = 0; k < surface_.n_points_per_face(); ++k)
           {
-            const unsigned int point = face * surface_.n_points_per_face() + k;
-            energy.membrane += reference_weights_[point] * membrane(metric_at(buffers.y, k * n_rows_, face), point).energy;
-            if (n_rows_ == 5)
+            const unsigned int point  = face * surface_.n_points_per_face() + k;
+            const Metric       metric = metric_at(buffers.y, k * n_rows_, face);
+            energy.membrane +=
+              reference_weights_[point] * (is_thick() ? thick(derivatives(buffers.y, k), metric, point, false).energy : membrane(metric, point).energy);
+            if (moduli_.bending_modulus > 0.)
               energy.bending += surface_.weights()[point] * bending_energy(derivatives(buffers.y, k), moduli_.bending_modulus, reference_curvature_[point]);
           }
       }
@@ -288,7 +335,7 @@ namespace tanktread
       K.coeffs().setZero();
 
     FaceBuffers buffers(surface_, n_rows_, true);
-    const bool  symmetric = n_rows_ == 2 || parameters_.form == BendingForm::variational;
+    const bool  symmetric = moduli_.bending_modulus == 0. || parameters_.form == BendingForm::variational;
     f.setZero(x.rows(), 3);
     for (const unsigned int face : faces)
       {

@@ -19,8 +19,8 @@ namespace tanktread
     add_enum_parameter(prm,
                        "Membrane law",
                        law,
-                       {{"neo-Hookean", MembraneLaw::neo_hookean}, {"Skalak", MembraneLaw::skalak}},
-                       "Strain energy of the membrane. Both laws have the surface shear modulus E h/3.");
+                       {{"neo-Hookean", MembraneLaw::neo_hookean}, {"Skalak", MembraneLaw::skalak}, {"none", MembraneLaw::none}},
+                       "Strain energy of the membrane. Both laws have the surface shear modulus E h/3; none: the shell bends only.");
     prm.add_parameter("Area dilatation number", area_dilatation, "C in Skalak's law, the resistance to changes of area; not used by neo-Hookean.");
     add_enum_parameter(prm,
                        "Reference curvature",
@@ -33,7 +33,11 @@ namespace tanktread
                        form,
                        {{"variational", BendingForm::variational}, {"moment-only", BendingForm::moment_only}},
                        "Virtual work of bending: the full variation of the bending energy, or the moments on the change of curvature only (Le 2010).");
-    prm.add_parameter("Thickness", thickness, "Thickness of the shell in a. Only 0, the thin limit, is implemented.");
+    prm.add_parameter("Thickness",
+                      thickness,
+                      "Thickness h of the undeformed shell in a; its resistance to bending comes on top of 'Reduced bending modulus' and is unstressed in the "
+                      "initial shape. 0: a membrane. With neo-Hookean only.",
+                      dealii::Patterns::Double(0.));
     prm.leave_subsection();
   }
 
@@ -45,7 +49,9 @@ namespace tanktread
       throw InputError("Capsule/Area dilatation number: got " + std::to_string(area_dilatation) + "; Skalak's law is stable for numbers above -0.5.");
     if (!std::isfinite(reference_curvature_value))
       throw InputError("Capsule/Reference curvature value: got " + std::to_string(reference_curvature_value) + "; it has to be a finite number.");
-    if (!(thickness == 0.))
-      throw InputError("Capsule/Thickness: got " + std::to_string(thickness) + "; shells of finite thickness are not implemented yet, only 0 is allowed.");
+    if (!(thickness >= 0.) || !std::isfinite(thickness))
+      throw InputError("Capsule/Thickness: got " + std::to_string(thickness) + "; it must not be negative.");
+    if (law != MembraneLaw::neo_hookean && thickness > 0.)
+      throw InputError("Capsule/Thickness: got " + std::to_string(thickness) + "; only a neo-Hookean shell can be thick, allowed with this 'Membrane law': 0.");
   }
 } // namespace tanktread

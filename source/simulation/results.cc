@@ -4,6 +4,7 @@
 #include <deal.II/base/numbers.h>
 
 #include <Eigen/SparseCholesky>
+#include <tanktread/base/exceptions.h>
 #include <tanktread/base/mpi_errors.h>
 #include <tanktread/fluid/field_output.h>
 #include <tanktread/simulation/results.h>
@@ -13,6 +14,7 @@
 #include <tanktread/surface/surface_operators.h>
 
 #include <cmath>
+#include <fstream>
 #include <iomanip>
 #include <limits>
 #include <sstream>
@@ -40,7 +42,17 @@ namespace tanktread
                                                     "delta",
                                                     "pressure_jump",
                                                     "step",
-                                                    "cells"};
+                                                    "cells",
+                                                    "theta_continuous",
+                                                    "S_xx",
+                                                    "S_yy",
+                                                    "S_zz",
+                                                    "S_xy",
+                                                    "S_xz",
+                                                    "S_yz",
+                                                    "intrinsic_viscosity",
+                                                    "N1",
+                                                    "N2"};
 
   } // namespace
 
@@ -97,7 +109,17 @@ namespace tanktread
                                      o.delta,
                                      o.pressure_jump,
                                      o.step,
-                                     o.n_cells};
+                                     o.n_cells,
+                                     o.theta_continuous,
+                                     o.stress(0, 0),
+                                     o.stress(1, 1),
+                                     o.stress(2, 2),
+                                     o.stress(0, 1),
+                                     o.stress(0, 2),
+                                     o.stress(1, 2),
+                                     o.rheology.intrinsic_viscosity,
+                                     o.rheology.normal_difference_1,
+                                     o.rheology.normal_difference_2};
     on_first_rank(communicator_, [&] { history_->row(row); });
   }
 
@@ -125,7 +147,7 @@ namespace tanktread
 
 
   void
-  Results::add_contour(const double time, const TriangleMesh &topology, const ControlPoints &x)
+  Results::write_contour(const double time, const TriangleMesh &topology, const ControlPoints &x)
   {
     // Refined twice, the polygon that is cut is close to the smooth surface.
     TriangleMesh mesh = topology;
@@ -156,11 +178,45 @@ namespace tanktread
     on_first_rank(communicator_, [&] {
       const std::string shell_file = "shell_" + number.str() + ".vtu";
       write_shell(folder_ + "/" + shell_file, shell, state, velocity);
-      add_contour(time, shell.topology, state.x);
+      write_contour(time, shell.topology, state.x);
       shell_series_.add(time, shell_file);
       fluid_series_.add(time, fluid_file);
     });
     ++n_fields_;
+  }
+
+
+  void
+  Results::add_contour(const double time, const ShellView &shell, const ControlPoints &x)
+  {
+    on_first_rank(communicator_, [&] { write_contour(time, shell.topology, x); });
+  }
+
+
+  void
+  Results::write_summary(const std::string &outcome, const MotionSummary &s) const
+  {
+    const std::vector<std::pair<std::string, double>> numbers = {{"from", s.from},
+                                                                 {"end", s.end},
+                                                                 {"tank_treading_frequency", s.tank_treading_frequency},
+                                                                 {"tumbling_frequency", s.tumbling_frequency},
+                                                                 {"D_period", s.D_period},
+                                                                 {"D_frequency", 1. / s.D_period},
+                                                                 {"D_minimum", s.D_minimum},
+                                                                 {"D_maximum", s.D_maximum},
+                                                                 {"D_last", s.D_last},
+                                                                 {"theta_minimum", s.theta_minimum},
+                                                                 {"theta_maximum", s.theta_maximum},
+                                                                 {"theta_last", s.theta_last}};
+    on_first_rank(communicator_, [&] {
+      const std::string name = folder_ + "/summary.csv";
+      std::ofstream     file(name);
+      file << "quantity,value\noutcome," << outcome << "\nmode," << word(s.mode) << '\n' << std::setprecision(10);
+      for (const auto &[quantity, value] : numbers)
+        file << quantity << ',' << value << '\n';
+      if (!(file << std::flush))
+        throw InputError("cannot write \"" + name + "\"");
+    });
   }
 
 

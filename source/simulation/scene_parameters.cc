@@ -23,9 +23,16 @@ namespace tanktread
                        "shear: u = (z, 0, 0) far from the capsule, time in 1/gamma. quiescent: walls at rest, time in mu a^3 / kappa_B.");
     prm.add_parameter("Shear number G",
                       shear_number,
-                      "G = mu gamma a / (E h); E h is Young's modulus times thickness. Unused without shear.",
+                      "G = mu gamma a / M with the surface modulus M named by 'Scale modulus', E h unless said otherwise. Unused without shear.",
                       Double(positive));
-    prm.add_parameter("Reduced bending modulus", reduced_bending_modulus, "khat = kappa_B / (a^2 E h).", Double(0.));
+    prm.add_parameter("Reduced bending modulus", reduced_bending_modulus, "khat = kappa_B / (a^2 M), M as for G.", Double(0.));
+    add_enum_parameter(
+      prm,
+      "Scale modulus",
+      scale_modulus,
+      {{"Young", ScaleModulus::young}, {"shear", ScaleModulus::shear}},
+      "Modulus M in G and khat. Young: E h = 3 G_s, Young's modulus times thickness (for Skalak's law by definition). shear: the surface shear "
+      "modulus G_s, so that G is the capillary number.");
     prm.add_parameter("Viscosity ratio", viscosity_ratio, "Viscosity inside over viscosity outside.", Double(0.01, 100.));
     prm.add_parameter("Reynolds number", reynolds_number, "Re = rho gamma a^2 / mu. In this version 0: Stokes flow.", Double(0.));
     prm.add_parameter("Box side", box_side, "Side of the cube, in a; walls at z = -side/2 and side/2, periodic in x and y.", Double(3.));
@@ -48,7 +55,8 @@ namespace tanktread
   double
   SceneParameters::surface_young_modulus() const
   {
-    return flow == Flow::shear ? 1. / shear_number : 1. / reduced_bending_modulus;
+    const double scale = flow == Flow::shear ? 1. / shear_number : 1. / reduced_bending_modulus;
+    return scale_modulus == ScaleModulus::shear ? 3. * scale : scale;
   }
 
   double

@@ -22,7 +22,7 @@ namespace tanktread
     Derivatives
     derivatives_needed(const Parameters &parameters)
     {
-      return parameters.scene.bending_modulus() > 0. ? Derivatives::second : Derivatives::first;
+      return parameters.scene.bending_modulus() > 0. || parameters.shell.thickness > 0. ? Derivatives::second : Derivatives::first;
     }
 
 
@@ -42,19 +42,22 @@ namespace tanktread
       run.parameter_file = parameters.file;
       run.n_ranks        = n_ranks;
       run.shear          = parameters.scene.flow == Flow::shear;
-      run.G              = parameters.scene.shear_number;
-      run.khat           = parameters.scene.reduced_bending_modulus;
+      run.G              = 1. / parameters.scene.surface_young_modulus();
+      run.khat           = parameters.scene.bending_modulus() / parameters.scene.surface_young_modulus();
       run.box_side       = parameters.scene.box_side;
-      run.left_out       = {"inertia (Re = 0)", "shell thickness (0)"};
+      run.left_out       = {"inertia (Re = 0)"};
       if (parameters.scene.viscosity_ratio == 1.)
         run.left_out.push_back("variable viscosity (ratio 1: Laplace form, each velocity component by itself)");
       else
-        run.included.push_back("variable viscosity (ratio " + number(parameters.scene.viscosity_ratio) +
-                               ": strain form, inside and outside told apart at the Gauss points of the cells that the shell cuts)");
+        run.included.push_back("variable viscosity (ratio " + number(parameters.scene.viscosity_ratio) + ": strain form, cells that the shell cuts integrated part by part)");
+      if (parameters.shell.thickness == 0.)
+        run.left_out.push_back("shell thickness (0)");
       if (parameters.solver.interface == Interface::plain)
         run.left_out.push_back("the kink of the velocity and the jump of the pressure inside the cells that the shell cuts (Interface plain)");
+      if (parameters.shell.law == MembraneLaw::none)
+        run.left_out.push_back("the membrane: the shell bends only (Membrane law none)");
       if (parameters.scene.bending_modulus() == 0.)
-        run.left_out.push_back("bending and second derivatives of the surface (khat = 0)");
+        run.left_out.push_back(parameters.shell.thickness == 0. ? "bending and second derivatives of the surface (khat = 0)" : "Helfrich bending (khat = 0)");
       return run;
     }
 
@@ -193,6 +196,9 @@ namespace tanktread
     phase_->update(state_.x, o.ellipsoid, o.theta_over_pi);
     o.alpha             = phase_->alpha();
     o.delta             = phase_->delta();
+    o.theta_continuous  = phase_->theta();
+    o.stress            = particle_stress(state_.x, state_.force); // with one viscosity the forces are all of it
+    o.rheology          = rheology(o.stress, o.volume, flow_.shear_rate);
     o.time              = time_;
     o.step              = step.length;
     o.newton_iterations = step.newton_iterations;
@@ -201,11 +207,33 @@ namespace tanktread
     const bool first = n_steps_ == 0, fields_wanted = parameters_.output.field_interval > 0.;
     if (is_due(next_history_, parameters_.output.history_interval) || last)
       results_->add_history(o);
-    if (first || last || (fields_wanted && is_due(next_fields_, parameters_.output.field_interval)))
+    motion_.push_back({time_, o.ellipsoid.taylor_parameter, o.theta_continuous, o.alpha, o.delta});
+    const bool fields = first || last || (fields_wanted && is_due(next_fields_, parameters_.output.field_interval));
+    add_contours(step.length, fields);
+    if (fields)
       results_->add_fields(time_, view_, velocity, fluid_, state_, flow_.shear_rate);
     const double remaining = n_steps_ == 0 ? -1. : o.wall_time * (parameters_.scene.end_time - time_) / time_;
     log_.step(
       {n_steps_, time_, step.length, step.newton_iterations, step.linear_iterations, o.ellipsoid.taylor_parameter, o.theta_over_pi, o.volume_error, remaining});
+  }
+
+
+  void
+  Simulation::add_contours(const double length, const bool but_now)
+  {
+    const double rounding = 1e-9 * parameters_.scene.end_time;
+    for (const double time : parameters_.output.contour_times)
+      if (time > time_ - length + rounding && time <= time_ + rounding && !(but_now && time > time_ - rounding))
+        results_->add_contour(time, view_, stepper_.position(time));
+  }
+
+
+  void
+  Simulation::summarise(const std::string &outcome)
+  {
+    const MotionSummary summary = motion_summary(motion_);
+    log_.line("\n" + motion_text(summary));
+    results_->write_summary(outcome, summary);
   }
 
 
@@ -247,9 +275,11 @@ namespace tanktread
       {
         log_.line("FAILED at time " + std::to_string(time_) + ": " + error.what());
         log_.line("Last good state: " + results_->write_failed(view_, state_) + ".");
+        summarise("failed");
         log_.timings(timings_);
         throw;
       }
+    summarise("done");
     log_.timings(timings_);
   }
 } // namespace tanktread

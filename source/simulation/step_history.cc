@@ -52,6 +52,22 @@ namespace tanktread
   }
 
 
+  ControlPoints
+  StepHistory::at(const double time) const
+  {
+    ControlPoints x = ControlPoints::Zero(levels_[0].x.rows(), 3);
+    for (const Level &level : levels_)
+      {
+        double weight = 1.;
+        for (const Level &other : levels_)
+          if (other.time != level.time)
+            weight *= (time - other.time) / (level.time - other.time);
+        x += weight * level.x;
+      }
+    return x;
+  }
+
+
   double
   StepHistory::length_factor(const double local_error) const
   {

@@ -168,6 +168,7 @@ namespace tanktread
                              " Take a smaller Time/Step or Solver/Coupling = implicit.");
       }
     state = std::move(next);
+    history_.add(time + result.length, state.x);
     return result;
   }
 } // namespace tanktread

@@ -40,6 +40,23 @@ namespace tanktread
         }
     }
 
+    /** Whether an ellipsoid is one of revolution about axis i. */
+    bool
+    is_symmetric_about(const std::array<double, 3> &axes, const unsigned int i)
+    {
+      return axes[(i + 1) % 3] == axes[(i + 2) % 3];
+    }
+
+    /** Whether the axis to incline is z before the turn; it is x otherwise. */
+    bool
+    inclined_axis_is_z(const CapsuleShapeParameters &parameters)
+    {
+      const bool symmetry = parameters.inclined_axis == InclinedAxis::symmetry;
+      if (parameters.shape != Shape::ellipsoid)
+        return symmetry;
+      return symmetry ? is_symmetric_about(parameters.axes, 2) : parameters.axes[2] > parameters.axes[0];
+    }
+
     /**
      * Least squares over all points of a fine quadrature, weighted with area on the sphere. The limit surface of the icosphere, projected to the unit sphere,
      * says which point of the shape belongs to which parameter: it is as smooth as the basis at extraordinary vertices.
@@ -108,8 +125,15 @@ namespace tanktread
                       Double(0.));
     prm.add_parameter("Inclination",
                       inclination,
-                      "Angle in units of pi by which the shape is turned about the y axis; positive turns the x axis towards the z axis.");
-    prm.add_parameter("Mesh file", file, "Closed triangle mesh (.off or .obj) whose vertices lie on the surface of the capsule, for the shape 'file'.");
+                      "Angle in units of pi of the axis named below to the x axis, in the x-z plane; positive is towards the z axis.");
+    add_enum_parameter(
+      prm,
+      "Inclined axis",
+      inclined_axis,
+      {{"long", InclinedAxis::long_axis}, {"symmetry", InclinedAxis::symmetry}},
+      "Which axis that is. long: the longer one of the cross-section with the plane y = 0. symmetry: the axis of revolution, the short one of an "
+      "oblate spheroid or a biconcave disk. With a mesh file the x axis of the file (long) or its z axis (symmetry).");
+    prm.add_parameter("Mesh file", file, "Closed triangle mesh (.off, .obj or .vtk) whose vertices lie on the surface of the capsule, for the shape 'file'.");
     prm.leave_subsection();
   }
 
@@ -124,8 +148,19 @@ namespace tanktread
       throw InputError("Capsule/Aspect ratio: got " + std::to_string(aspect_ratio) + "; an oblate spheroid has one in (0, 1].");
     if (!std::isfinite(inclination))
       throw InputError("Capsule/Inclination: got " + std::to_string(inclination) + "; it has to be a finite number.");
+    if (shape == Shape::ellipsoid && inclined_axis == InclinedAxis::symmetry && !is_symmetric_about(axes, 0) && !is_symmetric_about(axes, 2))
+      throw InputError(
+        "Capsule/Inclined axis: got symmetry; an ellipsoid has an axis of revolution in the x-z plane if two of its axes are equal, y one of them. "
+        "Allowed: long");
     if (shape == Shape::file && file.empty())
       throw InputError("Capsule/Mesh file: the shape 'file' needs the name of a mesh file.");
+  }
+
+
+  double
+  CapsuleShapeParameters::turn() const
+  {
+    return (inclination - (inclined_axis_is_z(*this) ? 0.5 : 0.)) * M_PI;
   }
 
 
@@ -145,7 +180,7 @@ namespace tanktread
         result.topology       = icosphere(level);
         result.control_points = fit_shape(parameters, result.topology);
       }
-    normalise(result.topology, parameters.inclination * M_PI, result.control_points);
+    normalise(result.topology, parameters.turn(), result.control_points);
     return result;
   }
 

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Part of Tanktread: reading triangle meshes from OFF and OBJ files.
+// Part of Tanktread: reading triangle meshes from OFF and OBJ files, and choosing the reader.
 
 #include <tanktread/base/exceptions.h>
+#include <tanktread/surface/read_vtk.h>
 #include <tanktread/surface/triangle_mesh.h>
 
+#include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <sstream>
 
@@ -136,10 +139,13 @@ namespace tanktread
   read_triangle_mesh(const std::string &file)
   {
     const std::size_t dot       = file.rfind('.');
-    const std::string extension = dot == std::string::npos ? "" : file.substr(dot + 1);
-    if (extension != "off" && extension != "OFF" && extension != "obj" && extension != "OBJ")
-      throw InputError("Mesh file '" + file + "': the name has to end in .off or .obj.");
+    std::string       extension = dot == std::string::npos ? "" : file.substr(dot + 1);
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](const unsigned char c) { return std::tolower(c); });
+    if (extension == "vtk")
+      return read_legacy_vtk(file);
+    if (extension != "off" && extension != "obj")
+      throw InputError("Mesh file '" + file + "': the name has to end in .off, .obj or .vtk.");
     LineReader reader(file);
-    return extension == "off" || extension == "OFF" ? read_off(reader) : read_obj(reader);
+    return extension == "off" ? read_off(reader) : read_obj(reader);
   }
 } // namespace tanktread

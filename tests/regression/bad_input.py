@@ -59,6 +59,24 @@ CASES = {
         1,
         ["case.prm:2: Scene/Reynolds number is 5; not available in this version, allowed: 0"],
     ),
+    "thick_skalak": (
+        section("Capsule", "set Membrane law = Skalak", "set Thickness = 0.1"),
+        ["case.prm"],
+        1,
+        ["case.prm:3: Capsule/Thickness: got 0.1", "allowed with this 'Membrane law': 0"],
+    ),
+    "too_thick": (
+        section("Capsule", "set Shape = oblate", "set Aspect ratio = 0.5", "set Thickness = 0.7"),
+        ["case.prm"],
+        1,
+        ["Capsule/Thickness: got 0.7", "less than twice the smallest radius of curvature of the initial shape, which is 0.3"],
+    ),
+    "no_axis_of_symmetry": (
+        section("Capsule", "set Shape = ellipsoid", "set Axes = 3, 2, 1", "set Inclined axis = symmetry"),
+        ["case.prm"],
+        1,
+        ["case.prm:4: Capsule/Inclined axis: got symmetry", "Allowed: long"],
+    ),
     "open_mesh": (
         section("Capsule", "set Shape = file", "set Mesh file = open_mesh.off"),
         ["case.prm"],

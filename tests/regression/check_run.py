@@ -21,6 +21,7 @@ def arguments():
     parser.add_argument("--expect", action="append", default=[], metavar="COLUMN=VALUE,RELATIVE")
     parser.add_argument("--volume-error", type=float, default=1e-8)
     parser.add_argument("--time", type=float, help="time that the run has to reach")
+    parser.add_argument("--keeps", action="append", default=[], metavar="COLUMN=RELATIVE", help="column that must stay within this of its first value")
     parser.add_argument("--varies", action="append", default=[], metavar="COLUMN", help="column that must not be the same in all rows")
     parser.add_argument("--exit-code", type=int, default=0)
     parser.add_argument("--message", default="")
@@ -49,6 +50,12 @@ def failures_of_history(args):
     for column in args.varies:
         if len({row[column] for row in rows}) == 1:
             yield f"{column} is {rows[0][column]} in all rows"
+    for kept in args.keeps:
+        column, _, allowed = kept.partition("=")
+        change = max(abs(row[column] / rows[0][column] - 1) for row in rows)
+        print(f"{column}: changes by at most {change:.1e}")
+        if not change <= float(allowed):
+            yield f"{column} changes by {change}, allowed {allowed}"
     for expectation in args.expect:
         column, _, numbers = expectation.partition("=")
         value, relative = (float(number) for number in numbers.split(","))

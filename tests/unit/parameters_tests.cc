@@ -82,7 +82,10 @@ TEST(Parameters, ValuesReachTheirMembers)
                                                  "Scene/Reduced bending modulus=0.25",
                                                  "Scene/Box side=8",
                                                  "Scene/End time=3",
+                                                 "Scene/Scale modulus=shear",
                                                  "Capsule/Shape=oblate",
+                                                 "Capsule/Inclined axis=symmetry",
+                                                 "Capsule/Thickness=0.05",
                                                  "Shell mesh/Level=2",
                                                  "Shell mesh/Quadrature=12",
                                                  "Fluid mesh/Finest cell=0.25",
@@ -94,7 +97,10 @@ TEST(Parameters, ValuesReachTheirMembers)
   EXPECT_EQ(parameters.scene.reduced_bending_modulus, 0.25);
   EXPECT_EQ(parameters.scene.box_side, 8.);
   EXPECT_EQ(parameters.scene.end_time, 3.);
+  EXPECT_EQ(parameters.scene.scale_modulus, ScaleModulus::shear);
   EXPECT_EQ(parameters.capsule.shape, Shape::oblate);
+  EXPECT_EQ(parameters.capsule.inclined_axis, InclinedAxis::symmetry);
+  EXPECT_EQ(parameters.shell.thickness, 0.05);
   EXPECT_EQ(parameters.shell_mesh.level, 2u);
   EXPECT_EQ(parameters.shell_mesh.quadrature, 12u);
   EXPECT_EQ(parameters.fluid_mesh.finest_cell, 0.25);
@@ -114,10 +120,19 @@ TEST(Parameters, WrongValuesAreRefused)
   expect_error("Scene/Flow=quiescent", "Scene/Reduced bending modulus is 0");
   expect_error("Scene/Box side=1", "allowed: a number >= 3");
   expect_error("Scene/End time=-1", "allowed: a number >= 0");
+  expect_error("Scene/Scale modulus=bulk", "allowed: one of Young, shear");
+  expect_error("Capsule/Thickness=-0.1", "allowed: a number >= 0");
+  expect_error("Capsule/Inclined axis=short", "allowed: one of long, symmetry");
   expect_error("Shell mesh/Level=7", "allowed: a whole number from 0 to 6");
   expect_error("Shell mesh/Quadrature=2", "allowed: one of 1, 3, 6, 7, 12");
   expect_error("Output/Checkpoint interval=1", "not available in this version, allowed: 0");
   expect_error("Output/Directory=/dev/null/output", "is not a folder");
+}
+
+TEST(Parameters, MeaninglessPairsAreRefused)
+{
+  EXPECT_NE(error_of({"Capsule/Membrane law=Skalak", "Capsule/Thickness=0.1"}).find("Capsule/Thickness"), std::string::npos);
+  EXPECT_NE(error_of({"Capsule/Shape=ellipsoid", "Capsule/Axes=3, 2, 1", "Capsule/Inclined axis=symmetry"}).find("Capsule/Inclined axis"), std::string::npos);
 }
 
 TEST(Parameters, ShapeFromFileNeedsAFile)
@@ -184,4 +199,12 @@ TEST(SceneParameters, ModuliFollowFromTheNumbers)
   scene.flow = Flow::quiescent;
   EXPECT_DOUBLE_EQ(scene.surface_young_modulus(), 100.);
   EXPECT_DOUBLE_EQ(scene.bending_modulus(), 1.);
+
+  // made with G_s = E h/3 the same numbers mean three times the Young's modulus
+  scene.scale_modulus = ScaleModulus::shear;
+  EXPECT_DOUBLE_EQ(scene.surface_young_modulus(), 300.);
+  EXPECT_DOUBLE_EQ(scene.bending_modulus(), 1.);
+  scene.flow = Flow::shear;
+  EXPECT_DOUBLE_EQ(scene.surface_young_modulus(), 60.);
+  EXPECT_DOUBLE_EQ(scene.bending_modulus(), 0.2);
 }

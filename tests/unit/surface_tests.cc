@@ -243,6 +243,26 @@ namespace
     EXPECT_NO_THROW(check_closed_surface(mesh, "a.obj"));
   }
 
+  TEST(ReadTriangleMesh, ReadsLegacyVtk)
+  {
+    const std::string points = "POINTS 4 double\n0 0 0 1 0 0\n0 1 0\n0 0 1.5\nMETADATA\nINFORMATION 0\n\n";
+    const std::string cells = "4 16\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n", types = "CELL_TYPES 4\n5\n5\n5\n5\n";
+    const std::string split = "5 12\nOFFSETS vtktypeint64\n0 3 6 9 12\nCONNECTIVITY vtktypeint64\n0 2 1 0 1 3 0 3 2\n1 2 3\n";
+    const std::string data  = "POINT_DATA 4\nSCALARS POINTS double\nLOOKUP_TABLE default\n1 2 3 4\n";
+    for (const std::string &body : {"POLYDATA\n" + points + "POLYGONS " + cells + data,
+                                    "POLYDATA\n" + points + "POLYGONS " + split,
+                                    "UNSTRUCTURED_GRID\n" + points + "CELLS " + cells + types + data,
+                                    "UNSTRUCTURED_GRID\n" + points + "CELLS " + split + types})
+      {
+        const TriangleMesh mesh = read_triangle_mesh(write_file("a.vtk", "# vtk DataFile Version 5.1\nPOINTS of a title\nASCII\nDATASET " + body));
+        ASSERT_EQ(mesh.vertices.size(), 4u) << body;
+        ASSERT_EQ(mesh.faces.size(), 4u) << body;
+        EXPECT_EQ(mesh.vertices[3], Vector3d(0, 0, 1.5));
+        EXPECT_EQ(mesh.faces[1], (std::array<int, 3>{{0, 1, 3}}));
+        EXPECT_NO_THROW(check_closed_surface(mesh, "a.vtk"));
+      }
+  }
+
   TEST(ReadTriangleMesh, SaysWhereItFails)
   {
     const auto fails = [](const std::string &name, const std::string &text, const std::string &wanted) {
@@ -262,7 +282,20 @@ namespace
     fails("b.off", "OFF\n1 1 0\n0 0 0\n4 0 0 0 0\n", "only triangles");
     fails("b.obj", "v 0 0 0\nf 1 1 1 1\n", "line 2");
     fails("b.obj", "f a b c\n", "no vertex number");
-    fails("b.stl", "", ".off or .obj");
+    fails("b.stl", "", ".off, .obj or .vtk");
+    const std::string head = "# vtk DataFile Version 3.0\n\nASCII\nDATASET POLYDATA\n", point = "POINTS 1 float\n0 0 0\n";
+    fails("b.vtk", "<VTKFile>\n", "line 1: a legacy VTK file begins");
+    fails("b.vtk", "# vtk DataFile Version 3.0\n\nBINARY\n", "line 3: only VTK files in ASCII");
+    fails("b.vtk", "# vtk DataFile Version 3.0\n\nASCII\nDATASET STRUCTURED_GRID\n", "line 4: DATASET POLYDATA or");
+    fails("b.vtk", head + "POINTS 2 float\n0 0 0\n", "ends where a coordinate is expected");
+    fails("b.vtk", head + "POINTS 1 float\n0 zero 0\n", "line 6: 'zero' where a coordinate is expected");
+    fails("b.vtk", head + "POINTS -1 float\n", "line 5: -1 where the number of points");
+    fails("b.vtk", head + point, "without triangles");
+    fails("b.vtk", head + point + "POLYGONS 1 5\n4 0 0 0 0\n", "line 8: a cell with 4 points");
+    fails("b.vtk", head + point + "POLYGONS 2 4\nOFFSETS vtktypeint64\n0 4\n", "line 9: a cell that is no triangle");
+    fails("b.vtk", head + point + "POLYGONS 2 4\nOFFSETS vtktypeint64\n0 3\nCONNECTIVITY vtktypeint64\n0 0 0 0\n", "three numbers a cell");
+    fails("b.vtk", head + point + "LINES 1 3\n2 0 0\n", "LINES: only triangles");
+    fails("b.vtk", head + point + "CELLS 1 4\n3 0 0 0\nCELL_TYPES 1\n9\n", "line 10: a cell that is no triangle");
     EXPECT_THROW(read_triangle_mesh("does_not_exist.off"), InputError);
   }
 
@@ -745,6 +778,69 @@ namespace
     EXPECT_GT(order(error[3], error[4]), 1.9);
   }
 
+  /** Inclination, in units of pi, of the long axis of a capsule's cross-section. */
+  double
+  long_axis_angle(const CapsuleShapeParameters &shape)
+  {
+    const FittedShape        capsule = make_capsule(shape, 2);
+    const SubdivisionSurface surface(capsule.topology, triangle_quadrature(12), Derivatives::first);
+    return inertia_ellipsoid(surface, capsule.control_points).inclination / M_PI;
+  }
+
+  TEST(Capsule, InclinesTheAxisThatIsNamed)
+  {
+    CapsuleShapeParameters shape;
+    shape.inclination = 0.15;
+    const auto expect = [&shape](const double long_axis, const double symmetry) {
+      shape.inclined_axis = InclinedAxis::long_axis;
+      EXPECT_NEAR(long_axis_angle(shape), long_axis, 1e-6);
+      shape.inclined_axis = InclinedAxis::symmetry;
+      EXPECT_NEAR(long_axis_angle(shape), symmetry, 1e-6);
+    };
+    for (const Shape kind : {Shape::oblate, Shape::biconcave})
+      {
+        shape.shape = kind;
+        expect(0.15, -0.35); // the long axis is across the symmetry axis
+      }
+    shape.shape = Shape::ellipsoid;
+    shape.axes  = {{2., 2., 1.}};
+    expect(0.15, -0.35);
+    shape.axes = {{1., 2., 2.}};
+    expect(0.15, -0.35);
+    shape.axes = {{1., 1., 2.}}; // prolate: its symmetry axis is the long one
+    expect(0.15, 0.15);
+    shape.axes = {{2., 1., 1.}};
+    expect(0.15, 0.15);
+    for (const std::array<double, 3> &axes : {std::array<double, 3>{{3., 2., 1.}}, {{2., 1., 2.}}}) // none, and y
+      {
+        shape.axes = axes;
+        EXPECT_THROW(shape.check(), InputError);
+        shape.inclined_axis = InclinedAxis::long_axis;
+        EXPECT_NO_THROW(shape.check());
+        shape.inclined_axis = InclinedAxis::symmetry;
+      }
+    shape.axes          = {{1., 2., 3.}};
+    shape.inclined_axis = InclinedAxis::long_axis;
+    EXPECT_NEAR(long_axis_angle(shape), 0.15, 1e-6);
+  }
+
+  TEST(Capsule, AFileIsTurnedByItsOwnAxes)
+  {
+    TriangleMesh mesh = icosphere(1);
+    std::string  text = "OFF\n42 80 0\n";
+    for (const Vector3d &x : mesh.vertices)
+      text += std::to_string(2. * x[0]) + " " + std::to_string(x[1]) + " " + std::to_string(x[2]) + "\n";
+    for (const auto &[a, b, c] : mesh.faces)
+      text += "3 " + std::to_string(a) + " " + std::to_string(b) + " " + std::to_string(c) + "\n";
+    CapsuleShapeParameters shape;
+    shape.shape       = Shape::file;
+    shape.inclination = 0.15;
+    shape.file        = write_file("ellipsoid.off", text);
+    EXPECT_NEAR(long_axis_angle(shape), 0.15, 1e-4);
+    shape.inclined_axis = InclinedAxis::symmetry; // z, across the long axis x
+    EXPECT_NEAR(long_axis_angle(shape), -0.35, 1e-4);
+  }
+
   TEST(Capsule, PassesThroughTheVerticesOfAFile)
   {
     TriangleMesh mesh = icosphere(1);
@@ -780,10 +876,13 @@ namespace
     dealii::ParameterHandler prm;
     shape.add_parameters(prm);
     prm.parse_input_from_string(
-      "subsection Capsule\nset Shape = ellipsoid\nset Axes = 3, 2, 1\nset Inclination = 0.25\nset Mesh file = a.off\nset Aspect ratio = 0.7\nend\n");
+      "subsection Capsule\nset Shape = ellipsoid\nset Axes = 3, 2, 1\nset Inclination = 0.25\nset Inclined axis = symmetry\nset Mesh file = a.off\nset Aspect ratio = 0.7\nend\n");
     EXPECT_EQ(shape.shape, Shape::ellipsoid);
     EXPECT_EQ(shape.axes, (std::array<double, 3>{{3., 2., 1.}}));
     EXPECT_EQ(shape.inclination, 0.25);
+    EXPECT_EQ(shape.inclined_axis, InclinedAxis::symmetry);
+    EXPECT_THROW(shape.check(), InputError); // three different axes
+    shape.inclined_axis = InclinedAxis::long_axis;
     EXPECT_EQ(shape.aspect_ratio, 0.7);
     EXPECT_EQ(shape.file, "a.off");
     EXPECT_NO_THROW(shape.check());

@@ -6,6 +6,7 @@
 
 #include <tanktread/shell/metric.h>
 #include <tanktread/shell/shell_parameters.h>
+#include <tanktread/shell/thick_neo_hookean.h>
 #include <tanktread/surface/subdivision_surface.h>
 
 #include <vector>
@@ -20,17 +21,18 @@ namespace tanktread
   };
 
   /**
-   * A closed elastic shell of vanishing thickness: a membrane whose undeformed state is `reference`, and Helfrich bending about a reference curvature.
+   * A closed elastic shell: a membrane, or a shell of finite thickness, whose undeformed state is `reference`, and Helfrich bending about a reference curvature.
    * doc/theory.md, section 2.
    *
-   * With a bending modulus of zero nothing of bending is computed, and the surface needs first derivatives only. All sums run in a fixed order.
+   * With a bending modulus and a thickness of zero nothing of bending is computed, and the surface needs first derivatives only. All sums run in a fixed order.
    */
   class Shell
   {
   public:
     /**
-     * Keeps `surface` by reference; it has to have first derivatives, and second ones if the bending modulus is not zero (std::logic_error otherwise). Throws
-     * InputError on parameters that check() refuses or negative moduli, NumericalError where the reference shape is degenerate.
+     * Keeps `surface` by reference; it has to have first derivatives, and second ones if the bending modulus or the thickness is not zero (std::logic_error
+     * otherwise). Throws InputError on parameters that check() refuses, negative moduli or a thickness beyond the radii of curvature of the reference,
+     * NumericalError where the reference shape is degenerate.
      */
     Shell(const SubdivisionSurface &surface, const ShellParameters &parameters, const ShellModuli &moduli, const ControlPoints &reference);
 
@@ -43,7 +45,7 @@ namespace tanktread
 
     // With a list of `faces` only these contribute: the sum over lists that hold every face once is what all faces give.
 
-    /** Membrane energy and Helfrich energy; the latter is reported in the same way for both forms of the bending work. */
+    /** Energy of the membrane (of the thick shell, its bending included) and Helfrich energy; the latter is the same number for both forms of the bending work. */
     Energy
     energy(const ControlPoints &x) const;
     Energy
@@ -78,6 +80,21 @@ namespace tanktread
     MembraneDensity
     membrane(const Metric &metric, unsigned int point) const;
 
+    bool
+    is_thick() const
+    {
+      return !thick_reference_.empty();
+    }
+
+    ThickDensity
+    thick(const SurfaceDerivatives &y, const Metric &metric, unsigned int point, bool with_hessian) const;
+
+    void
+    set_reference_curvature(const ControlPoints &reference);
+
+    void
+    set_thick_reference(const ControlPoints &reference);
+
     void
     load_face(unsigned int face, const ControlPoints &x, FaceBuffers &buffers) const;
 
@@ -87,9 +104,10 @@ namespace tanktread
     const SubdivisionSurface    &surface_;
     ShellParameters              parameters_;
     ShellModuli                  moduli_;
-    unsigned int                 n_rows_; // 2 without bending, 5 with it
+    unsigned int                 n_rows_; // 2 without bending and thickness, else 5
     std::vector<unsigned int>    all_faces_;
     std::vector<ReferenceMetric> reference_metric_;
+    std::vector<ThickReference>  thick_reference_; // empty without thickness
     Eigen::VectorXd              reference_weights_, reference_curvature_;
   };
 } // namespace tanktread

@@ -15,7 +15,8 @@ namespace tanktread
   enum class MembraneLaw
   {
     neo_hookean,
-    skalak
+    skalak,
+    none // no membrane: the shell bends only
   };
 
   /** Mean curvature at which bending costs nothing: zero, that of the initial shape at each material point, or one number. */

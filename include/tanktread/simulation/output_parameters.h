@@ -4,6 +4,7 @@
 #ifndef tanktread_simulation_output_parameters_h
 #define tanktread_simulation_output_parameters_h
 
+#include <set>
 #include <string>
 
 namespace dealii
@@ -20,6 +21,8 @@ namespace tanktread
     double      history_interval    = 0.; // 0: each step
     double      field_interval      = 1.; // 0: first and last only
     double      checkpoint_interval = 0.; // 0: none
+
+    std::set<double> contour_times;
 
     /** Declares section "Output" in `prm`; parsing fills this object, which has to outlive `prm`. */
     void

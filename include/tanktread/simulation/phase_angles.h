@@ -29,6 +29,12 @@ namespace tanktread
     {
       return alpha_;
     }
+    /** Inclination that goes on over many turns. Not a number before it was defined for the first time. */
+    double
+    theta() const
+    {
+      return theta_;
+    }
     /** Not a number before the inclination was defined for the first time. */
     double
     delta() const

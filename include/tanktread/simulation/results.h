@@ -7,6 +7,8 @@
 #include <tanktread/base/csv_writer.h>
 #include <tanktread/fluid/fluid.h>
 #include <tanktread/shell/shell.h>
+#include <tanktread/simulation/motion.h>
+#include <tanktread/simulation/particle_stress.h>
 #include <tanktread/simulation/surface_vtu.h>
 #include <tanktread/solver/state.h>
 #include <tanktread/surface/surface_geometry.h>
@@ -25,9 +27,11 @@ namespace tanktread
     double           theta_over_pi = 0.; // inclination in units of pi; not a number while the section is round
     double           volume = 0., volume_error = 0., area = 0.;
     Shell::Energy    energy{};
-    double           dissipation   = 0.; // mu times the integral of |grad u|^2, u the disturbance velocity
-    double           pressure_jump = 0.;
-    double           alpha = 0., delta = 0.; // see PhaseAngles
+    double           dissipation      = 0.; // mu times the integral of |grad u|^2, u the disturbance velocity
+    double           pressure_jump    = 0.;
+    double           theta_continuous = 0., alpha = 0., delta = 0.; // see PhaseAngles
+    Eigen::Matrix3d  stress = Eigen::Matrix3d::Zero();              // see particle_stress()
+    Rheology         rheology{};
     double           step              = 0.;
     unsigned int     newton_iterations = 0, linear_iterations = 0;
     double           n_cells   = 0.;
@@ -48,8 +52,8 @@ namespace tanktread
   observe(const ShellView &shell, const Fluid &fluid, const State &state);
 
   /**
-   * history.csv (one row a step), contours.csv (the cut with the plane y = 0 at each field output: time, x, z), shell_NNNN.vtu and fluid_NNNNN.pvtu with shell.pvd and
-   * fluid.pvd. The first rank writes all but the pieces of the fluid.
+   * history.csv (one row a step), contours.csv (cuts with the plane y = 0 at each field output and when asked for: time, x, z), shell_NNNN.vtu and fluid_NNNNN.pvtu with shell.pvd and
+   * fluid.pvd, summary.csv at the end. The first rank writes all but the pieces of the fluid.
    */
   class Results
   {
@@ -64,6 +68,14 @@ namespace tanktread
     void
     add_fields(double time, const ShellView &shell, const ControlPoints &velocity, const Fluid &fluid, const State &state, double shear_rate);
 
+    /** The cut of the shell with control points x alone. */
+    void
+    add_contour(double time, const ShellView &shell, const ControlPoints &x);
+
+    /** summary.csv: lines "quantity,value", the first of them `outcome` with the word "done" or "failed". */
+    void
+    write_summary(const std::string &outcome, const MotionSummary &summary) const;
+
     /** The last good state of a run that failed: failed_shell.vtu. Returns the file's name. */
     std::string
     write_failed(const ShellView &shell, const State &state) const;
@@ -72,7 +84,7 @@ namespace tanktread
     void
     write_shell(const std::string &file, const ShellView &shell, const State &state, const ControlPoints &velocity) const;
     void
-    add_contour(double time, const TriangleMesh &topology, const ControlPoints &x);
+    write_contour(double time, const TriangleMesh &topology, const ControlPoints &x);
 
     std::string                folder_;
     MPI_Comm                   communicator_;

@@ -18,6 +18,13 @@ namespace tanktread
     quiescent // nothing but the shell
   };
 
+  /** Surface modulus M that G and khat are made with. */
+  enum class ScaleModulus
+  {
+    young, // E h
+    shear  // G_s = E h/3
+  };
+
   /**
    * Section "Scene". Lengths in a, the radius of the sphere with the capsule's volume; viscosity in mu of the outer fluid. A shear scene measures time in
    * 1/gamma (shear rate), a quiescent one in mu a^3 / kappa_B.
@@ -25,12 +32,14 @@ namespace tanktread
   struct SceneParameters
   {
     Flow   flow                    = Flow::shear;
-    double shear_number            = 0.05; // G = mu gamma a / (E h)
-    double reduced_bending_modulus = 0.;   // khat = kappa_B / (a^2 E h)
+    double shear_number            = 0.05; // G = mu gamma a / M
+    double reduced_bending_modulus = 0.;   // khat = kappa_B / (a^2 M)
     double viscosity_ratio         = 1.;   // inside / outside
     double reynolds_number         = 0.;   // rho gamma a^2 / mu
     double box_side                = 10.;
     double end_time                = 10.;
+
+    ScaleModulus scale_modulus = ScaleModulus::young;
 
     /** Declares section "Scene" in `prm`; parsing fills this object, which has to outlive `prm`. */
     void
@@ -40,7 +49,7 @@ namespace tanktread
     void
     check() const;
 
-    /** E h in these units: 1/G with shear, 1/khat without. */
+    /** E h in these units: 1/G with shear, 1/khat without, three times that if they are made with G_s. */
     double
     surface_young_modulus() const;
 

@@ -12,6 +12,7 @@
 #include <tanktread/simulation/time_stepper.h>
 
 #include <memory>
+#include <vector>
 
 namespace tanktread
 {
@@ -43,6 +44,12 @@ namespace tanktread
     is_due(double &next, double interval) const;
     void
     record(const StepResult &step, bool last);
+    /** Contours asked for at times of the last step; not the present one if `but_now`. */
+    void
+    add_contours(double length, bool but_now);
+    /** Says how the capsule has moved, in the log and in summary.csv. */
+    void
+    summarise(const std::string &outcome);
 
     const Parameters            &parameters_;
     MPI_Comm                     communicator_;
@@ -65,6 +72,7 @@ namespace tanktread
     unsigned int                 n_steps_ = 0, n_quiet_steps_ = 0, remeshing_iterations_ = 0;
     double                       next_fields_, next_history_ = 0.;
     std::unique_ptr<PhaseAngles> phase_; // from the first record on
+    std::vector<MotionSample>    motion_;
     InertiaEllipsoid             ellipsoid_{};
     std::unique_ptr<Results>     results_;
   };

@@ -44,6 +44,10 @@ namespace tanktread
     double
     first_length() const;
 
+    /** Positions at a time up to the last level: the parabola through the last three levels, the straight line through two, the only one. As accurate as the schemes where it lies between the last two. */
+    ControlPoints
+    at(double time) const;
+
   private:
     bool
     is_second_order() const

@@ -46,6 +46,13 @@ namespace tanktread
     StepResult
     step(State &state, double time);
 
+    /** Positions of the shell at a time of the last step. */
+    ControlPoints
+    position(const double time) const
+    {
+      return history_.at(time);
+    }
+
   private:
     StepResult
     implicit_step(State &state, double time);

@@ -27,6 +27,13 @@ namespace tanktread
     file
   };
 
+  /** Which axis of the shape makes the angle `inclination` with the flow direction x. */
+  enum class InclinedAxis
+  {
+    long_axis, // the longer axis of the cross-section with the plane y = 0
+    symmetry   // the axis of revolution
+  };
+
   /**
    * The parameters of section "Capsule" that describe the initial shape.
    *
@@ -36,24 +43,38 @@ namespace tanktread
    *   C2 = -1.1228; the symmetry axis is z (Evans & Fung 1972; Le 2010).
    * - file: the limit surface through the vertices of a closed triangle mesh; its connectivity is the control mesh.
    *
-   * Afterwards the shape is turned about y by `inclination` (in units of pi): a positive angle turns the +x axis towards the +z axis, so that the angle
-   * is the one that InertiaEllipsoid::inclination measures.
+   * Afterwards the shape is turned about y until the axis that `inclined_axis` names stands at `inclination` (in units of pi) to the x axis, positive towards +z;
+   * with the long axis that is the angle which InertiaEllipsoid::inclination measures. These are the axes before the turn:
+   *
+   * | shape | long_axis | symmetry |
+   * |---|---|---|
+   * | sphere | x, any would do | z, any would do |
+   * | ellipsoid | the longer one of x and z, x if they are equal | the one whose two others are equal, if that is x or z |
+   * | oblate, biconcave | x | z |
+   * | file | the x axis of the file | the z axis of the file |
+   *
+   * The two differ by pi/2 for all shapes but prolate ellipsoids, where they are the same.
    */
   struct CapsuleShapeParameters
   {
-    Shape                 shape        = Shape::sphere;
-    std::array<double, 3> axes         = {{2., 2., 1.}};
-    double                aspect_ratio = 0.6;
-    double                inclination  = 0.;
+    Shape                 shape         = Shape::sphere;
+    std::array<double, 3> axes          = {{2., 2., 1.}};
+    double                aspect_ratio  = 0.6;
+    double                inclination   = 0.;
+    InclinedAxis          inclined_axis = InclinedAxis::long_axis;
     std::string           file;
 
     /** Declares the parameters in section "Capsule" of `prm`; parsing fills this object, which has to outlive `prm`. */
     void
     add_parameters(dealii::ParameterHandler &prm);
 
-    /** Throws InputError on values that make no shape. */
+    /** Throws InputError on values that make no shape, and on an axis to incline that the shape does not have. */
     void
     check() const;
+
+    /** Angle in radians by which the shape above is turned about y, +x towards +z. */
+    double
+    turn() const;
   };
 
   /** Control points and the mesh that connects them. */

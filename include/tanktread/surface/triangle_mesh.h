@@ -40,7 +40,8 @@ namespace tanktread
   icosphere(unsigned int level);
 
   /**
-   * Reads an OFF file (ASCII) or a Wavefront OBJ file (only its `v` and `f` records), told apart by the extension .off or .obj.
+   * Reads an OFF file (ASCII), a Wavefront OBJ file (only its `v` and `f` records) or a legacy VTK file (read_legacy_vtk()), told apart by the extension .off,
+   * .obj or .vtk.
    * Throws InputError with file and line when the file cannot be opened, ends early, or has faces that are no triangles.
    */
   TriangleMesh

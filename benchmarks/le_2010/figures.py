@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Part of Tanktread: the figures of Le (2010), drawn from our runs beside the reference solutions.
+"""draw(name, results, folder) makes <folder>/<name>.png from what has been computed, or leaves it out and returns False when there is nothing."""
+
+import math
+import pathlib
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import runs  # noqa: F401  (puts plot_run on the path)
+import plot_run
+import snapshots
+
+COLORS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7"]
+LABELS = {"D_xz": r"$D_{xz}$", "theta": r"$\theta/\pi$", "theta_continuous": r"$\theta/\pi$, continuous", "delta": r"$\delta/\pi$", "area": r"area / initial area"}
+GAMMA_T = r"$\dot\gamma t$"
+
+
+def khat_label(result):
+    return rf"$\hat\kappa$ = {result.khat:g}"
+
+
+def values(result, column):
+    series = result.series[column]
+    if column == "theta":
+        return plot_run.without_jumps(series)
+    return series / series[0] if column == "area" else series
+
+
+def draw_curves(axes, results, columns):
+    """One column of axes: curves of the runs over time, references dashed, all in the colour of their bending modulus."""
+    for result, color in zip(results, COLORS):
+        if not result.series:
+            continue
+        reference = result.reference()
+        for axis, column in zip(axes, columns):
+            axis.plot(result.series["time"], values(result, column), color=color, linewidth=1.6, label=khat_label(result))
+            name = {"D_xz": "D"}.get(column, column)
+            if reference and name in reference[0]:
+                draw = plot_run.without_jumps if column == "theta" else np.asarray
+                shown = reference[0]["time"] <= result.series["time"][-1] * 1.02 + 1
+                axis.plot(reference[0]["time"][shown], draw(reference[0][name])[shown], "--", color="#222222", linewidth=0.9, zorder=5)
+    for axis, column in zip(axes, columns):
+        axis.set_ylabel(LABELS[column])
+    axes[-1].set_xlabel(GAMMA_T)
+    axes[0].legend(fontsize=8)
+
+
+def time_series(groups, columns):
+    """A figure with a column of panels for each (title, results)."""
+    figure, axes = plt.subplots(len(columns), len(groups), figsize=(4.6 * max(1.35, len(groups)), 2.1 * len(columns) + 0.5), sharex="col", squeeze=False)
+    for column, (title, results) in enumerate(groups):
+        draw_curves(axes[:, column], results, columns)
+        axes[0, column].set_title(title + "   (dashed: boundary integral, unbounded)", fontsize=8, loc="left")
+    return figure
+
+
+def split_by_G(results):
+    return [(f"G = {G:g}", [result for result in results if result.G == G]) for G in sorted({result.G for result in results})]
+
+
+def draw_relaxation(results):
+    """Contours of the finest runs above; semi-axes of all runs below."""
+    shapes = [("ellipsoid 2:2:1", [r for r in results if "ellipsoid" in r.name]), ("biconcave disk", [r for r in results if "biconcave" in r.name])]
+    figure, axes = plt.subplots(2, 2, figsize=(8.4, 7))
+    for column, (title, group) in enumerate(shapes):
+        for result in group[:1]:
+            for (time, x, z), shade in zip(result.contours, np.linspace(0.15, 0.95, max(1, len(result.contours)))):
+                axes[0, column].plot(x, z, color=plt.cm.viridis(shade), linewidth=1.4, label=f"t = {time:.3g}")
+            reference = result.reference()
+            if reference:
+                for name in ("L", "B"):
+                    axes[1, column].plot(reference[0]["time"], reference[0][name], "--", color="#222222", linewidth=0.9, zorder=5)
+        axes[0, column].set(aspect="equal", xlabel="$x/a$", ylabel="$z/a$")
+        axes[0, column].set_title(title, fontsize=9, loc="left")
+        if group[0].contours:
+            axes[0, column].legend(fontsize=8)
+        for result, color in zip(group, COLORS):
+            if not result.series:
+                continue
+            step = result.name.split("_step")[1] if "_step" in result.name else None
+            style = {"linewidth": 1.6} if step is None else {"marker": "o", "markersize": 3 if step == "0.05" else 5, "linewidth": 0.6}
+            label = "steps by local error" if step is None else f"steps of {step}, backward Euler"
+            for name in ("L", "B"):
+                axes[1, column].plot(result.series["time"], result.series[name], color=color, label=label if name == "L" else None, **style)
+        axes[1, column].set(xlabel=r"$t\,\kappa_B/(\mu a^3)$", ylabel="semi-axes $L/a$, $B/a$", xlim=(-0.1, 5.2))
+        if any(result.series for result in group):
+            axes[1, column].legend(fontsize=8)
+    return figure
+
+
+def draw_contours(results):
+    """The last cut of each run with the shear plane."""
+    groups = split_by_G(results)
+    figure, axes = plt.subplots(1, len(groups), figsize=(4.2 * len(groups), 3.2), squeeze=False, sharex=True, sharey=True)
+    for axis, (title, group) in zip(axes[0], groups):
+        for result, color in zip(group, COLORS):
+            if result.contours:
+                time, x, z = result.contours[-1]
+                axis.plot(x, z, color=color, linewidth=1.5, label=khat_label(result))
+        axis.plot(np.cos(np.linspace(0, 2 * math.pi)), np.sin(np.linspace(0, 2 * math.pi)), ":", color="#888888", linewidth=0.9)
+        axis.set(aspect="equal", xlabel="$x/a$", ylabel="$z/a$")
+        axis.set_title(title + "   (dotted: at rest)", fontsize=9, loc="left")
+        axis.legend(fontsize=8)
+    return figure
+
+
+DRAWN = {
+    "fig01": draw_relaxation,
+    "fig02": draw_contours,
+    "fig03": lambda results: time_series(split_by_G(results), ["D_xz", "theta"]),
+    "fig04": lambda results: time_series([(r"G = 0.05, $\lambda$ = 5", results)], ["D_xz", "theta"]),
+    "fig05": lambda results: time_series([("G = 0.05", results)], ["D_xz", "theta", "delta"]),
+    "fig06": lambda results: time_series([("G = 0.005", results)], ["D_xz", "theta", "delta"]),
+    "fig07": lambda results: time_series([("G = 0.008", results)], ["D_xz", "theta", "delta"]),
+    "fig08": lambda results: time_series([(r"G = 0.05, $\lambda$ = 5", results)], ["D_xz", "theta", "delta"]),
+    "fig09": lambda results: time_series([(r"G = 0.5, $\lambda$ = 2", results)], ["D_xz", "theta", "delta", "area"]),
+    "fig10": snapshots.draw,
+    "fig11": lambda results: time_series([(r"G = 0.1, $\lambda$ = 4", results)], ["D_xz", "theta", "delta", "area"]),
+    "fig12": snapshots.draw,
+}
+
+
+def draw(name, results, folder):
+    """Whether there was anything to draw. A figure without runs is removed, so that none is left from other runs."""
+    file = pathlib.Path(folder) / f"{name}.png"
+    wanted = results.of(name)
+    file.unlink(missing_ok=True)
+    if not any(result.series for result in wanted):
+        print(f"{name}: nothing to draw ({', '.join(sorted({result.state() for result in wanted}))})")
+        return False
+    figure = DRAWN[name](wanted)
+    if figure is None:
+        return False
+    file.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(file, dpi=90)
+    plt.close(figure)
+    print(f"{name}: {file}")
+    return True

@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Part of Tanktread: the report doc/le_2010.md.
+"""write(file, results): what the runs show, figure by figure, and for each statement in the text of Le (2010)."""
+
+import math
+import pathlib
+
+import numpy as np
+
+import runs
+import statements
+
+TITLES = {
+    "fig01": "Relaxation in a liquid at rest",
+    "fig02": "Spheres in shear: sections of the deformed shells",
+    "fig03": "Spheres in shear: deformation and inclination",
+    "fig04": "Spheres with viscosity ratio 5",
+    "fig05": "Oblate spheroid, G = 0.05",
+    "fig06": "Oblate spheroid, G = 0.005",
+    "fig07": "Oblate spheroid, G = 0.008",
+    "fig08": "Oblate spheroid, G = 0.05, viscosity ratio 5",
+    "fig09": "Biconcave capsule, G = 0.5, viscosity ratio 2",
+    "fig10": "Biconcave capsule, G = 0.5, viscosity ratio 2: snapshots",
+    "fig11": "Biconcave capsule, G = 0.1, viscosity ratio 4",
+    "fig12": "Biconcave capsule, G = 0.1, viscosity ratio 4: snapshots",
+}
+REFERENCE_TIMES = (0.25, 0.75)
+
+
+def show(value, digits=5):
+    return "–" if value is None or isinstance(value, float) and math.isnan(value) else f"{value:.{digits}g}"
+
+
+def difference(value, reference):
+    """"value (+0.12 %)", or the value alone."""
+    if math.isnan(value) or math.isnan(reference):
+        return show(value)
+    return f"{value:.5g} ({100 * (value / reference - 1):+.2f} %)"
+
+
+def table(head, rows):
+    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows]) + "\n"
+
+
+def short(result):
+    return result.name.split("/")[1] + (f", {result.resolution}" if result.state() == "done" else "")
+
+
+def not_done(results):
+    """Rows for runs without a result."""
+    return [(short(result), result.state()) for result in results if result.state() != "done"]
+
+
+def relaxation_table(results):
+    """Semi-axes at the times for which there is a reference, and the end of each run."""
+    rows = []
+    for result in results:
+        if not result.series:
+            continue
+        reference = result.reference()
+        cells = [short(result)]
+        for time in REFERENCE_TIMES:
+            for name in ("L", "B", "W"):
+                wanted = runs.interpolated(reference[0]["time"], reference[0][name], time) if reference else math.nan
+                cells.append(difference(result.at(time, name), wanted))
+        last = {name: result.series[name][-1] for name in ("time", "L", "B")}
+        cells += [f"t = {last['time']:g}: {last['L'] / last['B'] - 1:.1e}", f"{np.abs(result.series['volume_error']).max():.0e}", str(len(result.series["time"]) - 1)]
+        rows.append(cells)
+    head = ["run"] + [f"{name}({time:g})" for time in REFERENCE_TIMES for name in ("L", "B", "W")] + ["L/B − 1 at the end", "volume error", "steps"]
+    return table(head, rows) if rows else ""
+
+
+def steady_table(results):
+    rows = []
+    for result in results:
+        if not result.series:
+            continue
+        reference = result.reference()
+        last = {name: result.series[name][-1] for name in ("D_xz", "theta", "intrinsic_viscosity", "N1", "N2", "time")}
+        wanted = [reference[0][name][-1] if reference else math.nan for name in ("D", "theta")]
+        rows.append([short(result), result.summary.get("mode", "–"), show(last["time"], 3), difference(last["D_xz"], wanted[0]), difference(last["theta"], wanted[1]),
+                     show(last["intrinsic_viscosity"], 4), show(last["N1"], 3), show(last["N2"], 3), f"{np.abs(result.series['volume_error']).max():.0e}"])
+    head = ["run", "motion", "end", "D (from the reference)", "θ/π (from the reference)", "[η]", "N₁", "N₂", "volume error"]
+    return table(head, rows) if rows else ""
+
+
+def motion_table(results):
+    rows = []
+    for result in results:
+        if not result.series:
+            continue
+        reference = result.reference()
+        wanted = (reference[1] if reference else None) or {}
+        cells = [short(result), result.summary.get("mode", "–") + (f" (reference: {wanted['mode']})" if wanted else "")]
+        cells += [difference(result.number(name), wanted.get(name, math.nan)) for name in ("D_minimum", "D_maximum", "D_period")]
+        frequency = result.number("tumbling_frequency") if result.summary.get("mode") == "tumbling" else result.number("tank_treading_frequency")
+        late = result.series["time"] >= result.number("from") if not math.isnan(result.number("from")) else slice(None)
+        cells += [show(frequency, 4), show(float(np.mean(result.series["intrinsic_viscosity"][late])), 4), f"{np.abs(result.series['volume_error']).max():.0e}",
+                  f"{100 * np.abs(result.series['area'] / result.series['area'][0] - 1).max():.2g} %"]
+        rows.append(cells)
+    head = ["run", "motion", "D min", "D max", "period of D", "turns per 1/γ̇", "mean [η]", "volume error", "area changes by"]
+    return table(head, rows) if rows else ""
+
+
+TABLES = {"fig01": relaxation_table, "fig02": None, "fig03": steady_table, "fig04": steady_table, "fig10": None, "fig12": None}
+
+
+def section(figure, results, folder):
+    wanted = results.of(figure)
+    text = [f"## Fig. {int(figure[3:])}: {TITLES[figure]}\n"]
+    if (folder / f"figures/le_2010/{figure}.png").is_file():
+        text.append(f"![{TITLES[figure]}](figures/le_2010/{figure}.png)\n")
+    else:
+        text.append("Not drawn: no run has results.\n")
+    make = TABLES.get(figure, motion_table)
+    if make:
+        text.append(make(wanted))
+    missing = not_done(wanted)
+    if missing:
+        text.append(table(["run without a result", "why"], missing))
+    return "\n".join(part for part in text if part)
+
+
+INTRODUCTION = """# The scenes of Le (2010)
+
+D. V. Le, *Effect of bending stiffness on the deformation of liquid capsules enclosed by thin shells in shear flow*, Phys. Rev. E 82, 016318 (2010), computed with this code.
+This page is written by
+
+    benchmarks/le_2010/run.py [--quick | --full]
+
+from the results that it finds; the parameter files are in `benchmarks/le_2010`. Each run is shown at the finest resolution at which it was done: {resolutions}. In shear, bending has the form
+`moment-only`, the paper's. Dashed curves and the
+differences in brackets are from the boundary-integral solutions of `benchmarks/reference`, which are for an unbounded liquid; what the box does is part of the difference. Where there is no
+bracket there is no such solution. Motion, periods and frequencies are judged by the rule of `doc/theory.md`, section 8.2.
+
+Choices where the paper leaves one: "inclined at 45°" is read as the long axis of the section at 45° to the flow (`Inclination = 0.25`); oblate and biconcave shells bend about their
+initial curvature, spheres and relaxing shells about a flat one; Skalak's C is 50. In the relaxation scenes the membrane is absent (`Membrane law = none`): with one that is at ease in the initial
+shape the capsule would not become a sphere. They bend in the form `variational`: the forces of `moment-only` along the shell (theory, (16a)) pull the material, which no membrane holds, together at the
+rim, until the mesh there is degenerate; the run `ellipsoid_moment_only` shows how far that goes.
+"""
+
+
+def write(file, results):
+    folder = pathlib.Path(file).parent
+    described = "; ".join(f"`{name}` has {runs.described(settings)}" for name, settings in runs.RESOLUTIONS.items())
+    text = [INTRODUCTION.format(resolutions=described)]
+    text += [section(figure, results, folder) for figure in runs.figure_names()]
+    text.append("## What the paper says, and what these runs show\n")
+    text.append(table(["figure", "in the paper", "here"], [(where, said, seen(results)) for where, said, seen in statements.STATEMENTS]))
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text("\n".join(text))
+    print(f"report: {file}")

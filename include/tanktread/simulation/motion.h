@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: what kind of motion a run shows, its periods and frequencies.
+
+#ifndef tanktread_simulation_motion_h
+#define tanktread_simulation_motion_h
+
+#include <string>
+#include <vector>
+
+namespace tanktread
+{
+  /** Shape and angles at one time. Angles in units of pi and continuous over many turns; not a number where they are not defined. */
+  struct MotionSample
+  {
+    double time;
+    double D;     // Taylor parameter
+    double theta; // inclination of the long axis
+    double alpha; // of a marker on the shell
+    double delta; // alpha - theta, from its start
+  };
+
+  enum class MotionMode
+  {
+    steady,      // the shape has stopped changing; the shell may go round it
+    swinging,    // the shell goes round, the long axis swings about a direction
+    tumbling,    // the long axis goes round with the shell
+    transition,  // both: the long axis goes round, the shell faster or slower
+    undetermined // the run is too short to say
+  };
+
+  /**
+   * Result of motion_summary(). Times in the scene's unit, frequencies in turns per unit of time: a period of the material or of the shape is the inverse. The shape comes back to
+   * itself after half a turn, so D has twice the frequency. A number that the run is too short for is not a number.
+   */
+  struct MotionSummary
+  {
+    MotionMode mode = MotionMode::undetermined;
+    double     from, end;                    // times between which the motion was judged
+    double     tank_treading_frequency;      // of the material against the shape, from delta
+    double     tumbling_frequency;           // of the shape, from theta
+    double     D_period;                     // mean time between the maxima of D
+    double     D_minimum, D_maximum;         // of its last oscillation; of the last fifth of the run when it has none
+    double     theta_minimum, theta_maximum; // between `from` and `end`
+    double     D_last, theta_last;
+  };
+
+  /**
+   * Judges a series of samples in order of time by the rule of doc/theory.md, section 8.2: over the time after the first half turn of the marker, the shape turns if
+   * theta covers half a turn or more, the material if delta does; swinging, tumbling and transition are material alone, shape alone and both. Steady means that D and theta / pi have
+   * changed by less than 0.001 in the last fifth of the run.
+   */
+  MotionSummary
+  motion_summary(const std::vector<MotionSample> &samples);
+
+  /** The word for a mode. */
+  std::string
+  word(MotionMode mode);
+
+  /** The summary in a few lines for the log. */
+  std::string
+  motion_text(const MotionSummary &summary);
+} // namespace tanktread
+
+#endif

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: what kind of motion a run shows, its periods and frequencies.
+
+#include <tanktread/simulation/motion.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+namespace tanktread
+{
+  namespace
+  {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+
+    using Samples = std::vector<MotionSample>;
+    using Member  = double MotionSample::*;
+
+    struct Range
+    {
+      double low = nan, high = nan;
+
+      double
+      width() const
+      {
+        return high - low;
+      }
+    };
+
+    /** Of the numbers among the values from index `first` on. */
+    Range
+    range(const Samples &samples, const std::size_t first, const Member member)
+    {
+      Range result;
+      for (std::size_t i = first; i < samples.size(); ++i)
+        {
+          result.low  = std::fmin(result.low, samples[i].*member);
+          result.high = std::fmax(result.high, samples[i].*member);
+        }
+      return result;
+    }
+
+
+    /** Index of the first sample after half a turn of the marker, or the number of samples. */
+    std::size_t
+    after_first_half_turn(const Samples &samples)
+    {
+      std::size_t i = 0;
+      while (i < samples.size() && std::abs(samples[i].alpha - samples[0].alpha) < 1.)
+        ++i;
+      return i;
+    }
+
+
+    bool
+    is_steady(const Samples &samples)
+    {
+      const double start = samples.back().time - 0.2 * (samples.back().time - samples.front().time);
+      std::size_t  first = samples.size() - 1;
+      while (first > 0 && samples[first - 1].time >= start)
+        --first;
+      const Range D = range(samples, first, &MotionSample::D), theta = range(samples, first, &MotionSample::theta);
+      const bool  is_round = D.high < 1e-3; // then the long axis is noise
+      return samples.size() - first >= 4 && D.width() < 1e-3 && (is_round || !(theta.width() >= 1e-3));
+    }
+
+
+    /** Turns per unit of time, from the whole half turns that `angle` makes from index `first` on. */
+    double
+    turning_frequency(const Samples &samples, const std::size_t first, const Member angle)
+    {
+      std::size_t begin = first;
+      while (begin < samples.size() && std::isnan(samples[begin].*angle))
+        ++begin;
+      if (begin >= samples.size())
+        return nan;
+      const double start = samples[begin].*angle, turned = std::abs(samples.back().*angle - start), half_turns = std::floor(turned);
+      if (half_turns < 1.)
+        return nan;
+      std::size_t i = begin;
+      while (std::abs(samples[i].*angle - start) < half_turns)
+        ++i;
+      const double before = std::abs(samples[i - 1].*angle - start), after = std::abs(samples[i].*angle - start);
+      const double time = samples[i - 1].time + (half_turns - before) / (after - before) * (samples[i].time - samples[i - 1].time);
+      return 0.5 * half_turns / (time - samples[begin].time);
+    }
+
+
+    struct Point
+    {
+      double time, value;
+    };
+
+    /** Extremum of the parabola through three samples; the middle one at the ends of the series. */
+    Point
+    refined(const Samples &samples, const std::size_t i)
+    {
+      const MotionSample &b = samples[i];
+      if (i == 0 || i + 1 == samples.size())
+        return {b.time, b.D};
+      const MotionSample &a = samples[i - 1], &c = samples[i + 1];
+      const double        left = (b.D - a.D) / (b.time - a.time), right = (c.D - b.D) / (c.time - b.time), curvature = (right - left) / (c.time - a.time);
+      if (curvature == 0.)
+        return {b.time, b.D};
+      const double slope = left + curvature * (b.time - a.time), time = b.time - slope / (2. * curvature); // slope at b
+      return {time, b.D - slope * slope / (4. * curvature)};
+    }
+
+
+    struct Extrema
+    {
+      std::vector<Point> maxima, minima;
+    };
+
+    /** Maxima and minima of D by turns, each at least a fifth of the whole range away from the last; those that the series begins or ends with do not count. */
+    Extrema
+    extrema(const Samples &samples, const std::size_t first)
+    {
+      Extrema      result;
+      const double least = 0.2 * range(samples, first, &MotionSample::D).width();
+      if (!(least > 2e-5))
+        return result;
+      std::size_t highest = first, lowest = first;
+      int         sought = 0; // 1: a maximum, -1: a minimum, 0: either
+      for (std::size_t i = first; i < samples.size(); ++i)
+        {
+          const double D = samples[i].D;
+          if (D > samples[highest].D)
+            highest = i;
+          if (D < samples[lowest].D)
+            lowest = i;
+          if (sought >= 0 && D < samples[highest].D - least)
+            {
+              if (highest > first)
+                result.maxima.push_back(refined(samples, highest));
+              sought = -1;
+              lowest = i;
+            }
+          else if (sought <= 0 && D > samples[lowest].D + least)
+            {
+              if (lowest > first)
+                result.minima.push_back(refined(samples, lowest));
+              sought  = 1;
+              highest = i;
+            }
+        }
+      return result;
+    }
+
+
+    MotionMode
+    mode(const Samples &samples, const std::size_t first)
+    {
+      if (is_steady(samples))
+        return MotionMode::steady;
+      const bool shape_turns    = range(samples, first, &MotionSample::theta).width() >= 1.,
+                 material_turns = range(samples, first, &MotionSample::delta).width() >= 1.;
+      if (shape_turns)
+        return material_turns ? MotionMode::transition : MotionMode::tumbling;
+      return material_turns ? MotionMode::swinging : MotionMode::undetermined;
+    }
+  } // namespace
+
+
+  MotionSummary
+  motion_summary(const std::vector<MotionSample> &samples)
+  {
+    MotionSummary s{MotionMode::undetermined, nan, nan, nan, nan, nan, nan, nan, nan, nan, nan, nan};
+    if (samples.empty())
+      return s;
+    const std::size_t first   = after_first_half_turn(samples);
+    s.mode                    = mode(samples, first);
+    s.end                     = samples.back().time;
+    s.from                    = first < samples.size() ? samples[first].time : nan;
+    s.tank_treading_frequency = turning_frequency(samples, first, &MotionSample::delta);
+    s.tumbling_frequency      = turning_frequency(samples, first, &MotionSample::theta);
+    const Extrema     D       = extrema(samples, first);
+    const std::size_t n       = D.maxima.size();
+    if (n >= 2)
+      s.D_period = (D.maxima.back().time - D.maxima.front().time) / (n - 1.);
+    const Range ends  = range(samples, samples.size() - 1 - (samples.size() - 1) / 5, &MotionSample::D);
+    s.D_minimum       = D.minima.empty() ? ends.low : D.minima.back().value;
+    s.D_maximum       = D.maxima.empty() ? ends.high : D.maxima.back().value;
+    const Range theta = range(samples, first, &MotionSample::theta);
+    s.theta_minimum   = theta.low;
+    s.theta_maximum   = theta.high;
+    s.D_last          = samples.back().D;
+    s.theta_last      = samples.back().theta;
+    return s;
+  }
+
+
+  std::string
+  word(const MotionMode mode)
+  {
+    switch (mode)
+      {
+        case MotionMode::steady:
+          return "steady";
+        case MotionMode::swinging:
+          return "swinging";
+        case MotionMode::tumbling:
+          return "tumbling";
+        case MotionMode::transition:
+          return "transition";
+        default:
+          return "undetermined";
+      }
+  }
+
+
+  std::string
+  motion_text(const MotionSummary &s)
+  {
+    std::ostringstream text;
+    text << "Motion: " << word(s.mode);
+    if (s.mode == MotionMode::undetermined)
+      text << " (the run is too short: the marker must turn by half a turn, then shape or material by another one)";
+    else if (!std::isnan(s.from))
+      text << ", judged from time " << s.from << " to " << s.end;
+    text << ".\n  D_xz between " << s.D_minimum << " and " << s.D_maximum;
+    if (!std::isnan(s.D_period))
+      text << " with period " << s.D_period;
+    text << "; at the end " << s.D_last << '.';
+    if (!std::isnan(s.tank_treading_frequency))
+      text << "\n  Tank-treading: " << s.tank_treading_frequency << " turns per unit of time (period " << 1. / s.tank_treading_frequency << ").";
+    if (!std::isnan(s.tumbling_frequency))
+      text << "\n  Tumbling: " << s.tumbling_frequency << " turns per unit of time (period " << 1. / s.tumbling_frequency << ").";
+    return text.str();
+  }
+} // namespace tanktread
