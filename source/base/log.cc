@@ -85,6 +85,10 @@ namespace tanktread
   {
     std::string text = program_version() + "\n" + library_versions() + "\n" + std::to_string(run.n_ranks) + (run.n_ranks == 1 ? " rank, " : " ranks, ") +
       run.parameter_file + ", " + now() + "\n\n" + scales_text(run);
+    if (!run.included.empty())
+      text += "\nComputed with:\n";
+    for (const std::string &item : run.included)
+      text += "  " + item + "\n";
     if (!run.left_out.empty())
       text += "\nLeft out, because the scene does not need it:\n";
     for (const std::string &item : run.left_out)

@@ -76,11 +76,12 @@ namespace tanktread
   void
   Coupling::attach(const TaylorHoodSpace &space)
   {
+    space_         = &space;
     communicator_  = space.mesh.communicator();
     interpolation_ = std::make_unique<PointInterpolation>(space);
     x_.resize(0, 3);
     if (interface_ == Interface::enriched)
-      enrichment_ = std::make_unique<JumpEnrichment>(space);
+      enrichment_ = std::make_unique<JumpEnrichment>(space, contrast_);
     local_faces_.clear();
   }
 
@@ -137,6 +138,13 @@ namespace tanktread
   }
 
 
+  Viscosity
+  Coupling::viscosity(const ControlPoints &x) const
+  {
+    return ShellViscosity(*space_)(SurfaceDistance(space_->mesh, quadratic_patches(surface_, x)), contrast_.ratio);
+  }
+
+
   double
   Coupling::distance(const ControlPoints &x) const
   {
@@ -155,6 +163,41 @@ namespace tanktread
     for (std::size_t i = 0; i < normal_forces_.size(); ++i)
       forces.at_points[i] -= factor * normal_forces_[i];
     enrichment_->extend(forces);
+  }
+
+
+  void
+  Coupling::extend_whole(const ControlPoints &f, ExtendedForces &forces) const
+  {
+    extend(f, forces);
+    if (interface_ == Interface::enriched)
+      enrichment_->complete(forces);
+  }
+
+
+  void
+  Coupling::update_viscous_forces(const FluidBlockVector &fields, const ControlPoints &f)
+  {
+    if (interface_ == Interface::plain || contrast_.ratio == 1.)
+      return;
+    ExtendedForces forces;
+    extend_whole(f, forces);
+    VelocityGradients gradients = velocity_gradients(fields);
+    for (unsigned int c = 0; c < 3; ++c)
+      for (unsigned int d = 0; d < 3; ++d)
+        gradients.col(3 * c + d).array() += contrast_.flow_gradient(c, d);
+    enrichment_->update_viscous_forces(gradients.data(), forces);
+  }
+
+
+  double
+  Coupling::undisturbed_work(const ControlPoints &f) const
+  {
+    if (interface_ == Interface::plain || contrast_.ratio == 1.)
+      return 0.;
+    ExtendedForces forces;
+    extend_whole(f, forces);
+    return enrichment_->undisturbed_work(forces);
   }
 
 
@@ -263,7 +306,7 @@ namespace tanktread
     if (interface_ == Interface::plain)
       return;
     ExtendedForces forces;
-    extend(f, forces);
+    extend_whole(f, forces);
     enrichment_->carry_pressure(forces, sides, fields);
   }
 

@@ -44,6 +44,30 @@ namespace tanktread
     }
 
 
+    /** Their gradients. */
+    std::array<Vector4, 27>
+    quadratic_gradients(const dealii::Point<3> &x)
+    {
+      std::array<Vector4, 27> result;
+      double                  n[3][3], dn[3][3];
+      for (unsigned int d = 0; d < 3; ++d)
+        {
+          n[d][0]  = (1. - x[d]) * (1. - 2. * x[d]);
+          n[d][1]  = 4. * x[d] * (1. - x[d]);
+          n[d][2]  = x[d] * (2. * x[d] - 1.);
+          dn[d][0] = 4. * x[d] - 3.;
+          dn[d][1] = 4. - 8. * x[d];
+          dn[d][2] = 4. * x[d] - 1.;
+        }
+      for (unsigned int a = 0; a < 27; ++a)
+        {
+          const unsigned int i = a % 3, j = a / 3 % 3, k = a / 9;
+          result[a] = {dn[0][i] * n[1][j] * n[2][k], n[0][i] * dn[1][j] * n[2][k], n[0][i] * n[1][j] * dn[2][k]};
+        }
+      return result;
+    }
+
+
     /** The trilinear functions at the 27 nodes. */
     const std::array<std::array<double, 8>, 27> &
     hats_at_nodes()
@@ -154,8 +178,9 @@ namespace tanktread
   } // namespace
 
 
-  JumpEnrichment::JumpEnrichment(const TaylorHoodSpace &space)
+  JumpEnrichment::JumpEnrichment(const TaylorHoodSpace &space, const ViscosityContrast &contrast)
     : space_(space)
+    , contrast_(contrast)
     , locator_(space.mesh)
     , extension_(ScalarSpace(space.mesh, 1, false), 4)
     , extension_values_(extension_.full_size())
@@ -169,6 +194,11 @@ namespace tanktread
     add_pressure_mass(cubes(space), ones.data(), pressure_values_.data());
     p.collect(pressure_values_.data());
     pressure_integrals_.assign(pressure_values_.begin(), pressure_values_.begin() + p.n_owned());
+    if (contrast_.ratio != 1.)
+      {
+        viscous_values_.resize(extension_.full_size());
+        std::fill(viscous_values_.begin(), viscous_values_.end(), 0.);
+      }
   }
 
 
@@ -182,6 +212,14 @@ namespace tanktread
     hats_.resize(local.size());
     normals_.resize(local.size());
     psi_.assign(local.size(), {});
+    slopes_.clear();
+    areas_.clear();
+    if (contrast_.ratio != 1.)
+      {
+        slopes_.resize(local.size());
+        for (const unsigned int r : point_order_)
+          areas_.push_back(area_weights[local[r]]);
+      }
     for (unsigned int i = 0; i < point_order_.size(); ++i)
       {
         const unsigned int    r      = point_order_[i];
@@ -224,6 +262,7 @@ namespace tanktread
     const double        h    = mesh.cell_size(mesh.finest_level());
     std::vector<double> phi(space_.velocity->n_local(), std::nan(""));
     cut_cells_.clear();
+    transposed_.clear();
     nearby_cells_.clear();
     for (const Lattice &position : distance.cells_nearby())
       {
@@ -301,13 +340,15 @@ namespace tanktread
     std::array<double, 27>     scaled;
     for (unsigned int a = 0; a < 27; ++a)
       scaled[a] = nodes.phi[a] / space_.velocity->cell_sizes()[cell];
-    const PartialCellMatrices in = inside_matrices(scaled);
+    const double              lambda = contrast_.ratio;
+    GradientProducts          products;
+    const PartialCellMatrices in = inside_matrices(scaled, lambda == 1. ? nullptr : &products);
 
     // From forces at the vertices to amplitudes at the nodes.
     std::array<std::array<double, 8>, 27> q;
     for (unsigned int a = 0; a < 27; ++a)
       for (unsigned int v = 0; v < 8; ++v)
-        q[a][v] = nodes.phi[a] * hats_at_nodes()[a][v];
+        q[a][v] = 2. / (1. + lambda) * nodes.phi[a] * hats_at_nodes()[a][v];
 
     CutCell cut = {};
     cut.cell    = cell;
@@ -319,7 +360,7 @@ namespace tanktread
         std::array<double, 8> row = {}, row_same = {};
         for (unsigned int a = 0; a < 27; ++a)
           {
-            const double entry = nodes.inside[a] ? double(in.laplace[b][a]) - whole.laplace[b][a] : in.laplace[b][a];
+            const double entry = nodes.inside[a] ? double(in.laplace[b][a]) - whole.laplace[b][a] : lambda * in.laplace[b][a];
             for (unsigned int v = 0; v < 8; ++v)
               row[v] += entry * q[a][v];
             if (nodes.inside[a] == nodes.inside[b])
@@ -376,7 +417,48 @@ namespace tanktread
               for (unsigned int v = 0; v < 8; ++v)
                 psi_[i][v] -= N[a] * q[a][v];
         }
+    if (lambda != 1.)
+      add_viscous_part(cut, nodes, in, products, q);
     cut_cells_.push_back(cut);
+  }
+
+
+  void
+  JumpEnrichment::add_viscous_part(CutCell                                     &cut,
+                                   const NodeDistances                         &nodes,
+                                   const PartialCellMatrices                   &in,
+                                   const GradientProducts                      &products,
+                                   const std::array<std::array<double, 8>, 27> &q)
+  {
+    transposed_.emplace_back(products, nodes.inside, q, contrast_.ratio);
+    // Twice the strain rate of the undisturbed flow against that of psi, whose inner part has the amplitudes of the nodes outside.
+    const Eigen::Matrix3d S = (contrast_.ratio - 1.) * (contrast_.flow_gradient + contrast_.flow_gradient.transpose());
+    for (unsigned int v = 0; v < 8; ++v)
+      {
+        Eigen::Vector3d slope = Eigen::Vector3d::Zero();
+        for (unsigned int a = 0; a < 27; ++a)
+          if (!nodes.inside[a])
+            for (unsigned int d = 0; d < 3; ++d)
+              for (unsigned int j = 0; j < 8; ++j)
+                slope[d] += q[a][v] * in.divergence[j][27 * d + a];
+        const Eigen::Vector3d stress = S * slope;
+        for (unsigned int c = 0; c < 3; ++c)
+          cut.stress[v][c] = stress[c];
+      }
+    if (cut.group == no_points)
+      return;
+    const double h = space_.velocity->cell_sizes()[cut.cell];
+    for (unsigned int i = groups_[cut.group].begin; i < groups_[cut.group].end; ++i)
+      {
+        const auto gradients = quadratic_gradients(points_->unit_positions()[point_order_[i]]);
+        for (unsigned int v = 0; v < 8; ++v)
+          {
+            Vector4 sum;
+            for (unsigned int a = 0; a < 27; ++a)
+              sum += ((nodes.inside[a] ? -0.5 : 0.5) * q[a][v] / h) * gradients[a];
+            slopes_[i][v] = sum;
+          }
+      }
   }
 
 
@@ -457,6 +539,62 @@ namespace tanktread
       }
     average();
     forces.at_vertices = extension_values_;
+    forces.whole       = false;
+  }
+
+
+  void
+  JumpEnrichment::complete(ExtendedForces &forces) const
+  {
+    if (contrast_.ratio == 1.)
+      return;
+    for (std::size_t i = 0; i < viscous_values_.size(); ++i)
+      forces.at_vertices[i] += viscous_values_[i];
+    forces.whole = true;
+  }
+
+
+  void
+  JumpEnrichment::update_viscous_forces(const double *const gradients, const ExtendedForces &forces)
+  {
+    ExtendedForces g;
+    g.at_points.resize(3 * point_order_.size());
+    for (const PointGroup &group : groups_)
+      {
+        const VertexForces f = vertex_values(forces.at_vertices, group.cell);
+        for (unsigned int i = group.begin; i < group.end; ++i)
+          {
+            const unsigned int r = point_order_[i];
+            Eigen::Matrix3d    G = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(gradients + 9 * r);
+            for (unsigned int v = 0; v < 8; ++v)
+              for (unsigned int c = 0; c < 3; ++c)
+                for (unsigned int d = 0; d < 3; ++d)
+                  G(c, d) += f[v][c] * slopes_[i][v][d];
+            const Eigen::Vector3d n(normals_[i][0], normals_[i][1], normals_[i][2]);
+            const Eigen::Vector3d traction = (1. - contrast_.ratio) * areas_[i] * (G * n + G.transpose() * n);
+            std::copy_n(traction.data(), 3, &g.at_points[3 * r]);
+          }
+      }
+    extend(g);
+    viscous_values_ = g.at_vertices;
+  }
+
+
+  double
+  JumpEnrichment::undisturbed_work(const ExtendedForces &forces) const
+  {
+    double result = 0.;
+    for (const CutCell &cut : cut_cells_)
+      {
+        const VertexForces f = vertex_values(forces.at_vertices, cut.cell);
+        const double       h = space_.velocity->cell_sizes()[cut.cell];
+        for (unsigned int v = 0; v < 8; ++v)
+          {
+            const Vector4 product = vector(cut.stress[v]).times(f[v]);
+            result += h * h * (product[0] + product[1] + product[2]);
+          }
+      }
+    return dealii::Utilities::MPI::sum(result, space_.mesh.communicator());
   }
 
 
@@ -474,6 +612,8 @@ namespace tanktread
         const unsigned int *const nodes   = u_space.cell_nodes(cut.cell);
         const unsigned int *const p_nodes = p_space.cell_nodes(cut.cell);
         node_loads(cut.laplace, cut.pressure, h, f, loads);
+        if (!transposed_.empty())
+          transposed_[&cut - cut_cells_.data()].add_loads(h, f, loads);
         for (unsigned int b = 0; b < 27; ++b)
           add_at(u_space, nodes[b], factor * loads[b], load_u);
         for (unsigned int j = 0; j < 8; ++j)
@@ -495,15 +635,14 @@ namespace tanktread
 
 
   void
-  JumpEnrichment::add_self_response(const CutCell &cut, const VertexForces &f, const std::vector<double> &forces, VertexForces &r, std::vector<double> &values)
-    const
+  JumpEnrichment::add_self_response(const CutCell &cut, const VertexForces &f, const ExtendedForces &forces, VertexForces &r, std::vector<double> &values) const
   {
     const double h = space_.velocity->cell_sizes()[cut.cell];
     if (cut.group != no_points)
       for (unsigned int i = groups_[cut.group].begin; i < groups_[cut.group].end; ++i)
         {
           const unsigned int point = point_order_[i];
-          const Vector4      force(&forces[3 * point]);
+          const Vector4      force(&forces.at_points[3 * point]);
           Vector4            value(&values[3 * point]);
           for (unsigned int v = 0; v < 8; ++v)
             {
@@ -524,6 +663,11 @@ namespace tanktread
             r[j] += Vector4(0., 0., 0., -h * h * (product[0] + product[1] + product[2]));
           }
       }
+    if (!transposed_.empty())
+      transposed_[&cut - cut_cells_.data()].add_self_response(h, f, r);
+    if (forces.whole)
+      for (unsigned int v = 0; v < 8; ++v)
+        r[v] += -h * h * vector(cut.stress[v]);
   }
 
 
@@ -537,6 +681,8 @@ namespace tanktread
     for (unsigned int b = 0; b < 27; ++b)
       local[b] = velocity_at(*space_.velocity, nodes[b], u);
     add_node_response(cut.laplace, cut.pressure, h, local, r);
+    if (!transposed_.empty())
+      transposed_[&cut - cut_cells_.data()].add_response(h, local, r);
     for (unsigned int j = 0; j < 8; ++j)
       for (unsigned int v = 0; v < 8; ++v)
         r[v] += (h * h * p[p_nodes[j]]) * vector(cut.divergence[j][v]);
@@ -568,7 +714,7 @@ namespace tanktread
         VertexForces r;
         add_field_response(cut, u.begin(), pressure_values_.data(), r);
         if (forces != nullptr)
-          add_self_response(cut, vertex_values(forces->at_vertices, cut.cell), forces->at_points, r, values);
+          add_self_response(cut, vertex_values(forces->at_vertices, cut.cell), *forces, r, values);
         add_vertex_values(cut.cell, r);
       }
     u.zero_out_ghost_values();

@@ -17,21 +17,21 @@ namespace tanktread
   {
     std::vector<Lattice> cells(patches_.size());
     Lattice              high;
-    low_.fill(std::numeric_limits<int>::max());
+    block_.low.fill(std::numeric_limits<int>::max());
     high.fill(std::numeric_limits<int>::min());
     for (std::size_t q = 0; q < patches_.size(); ++q)
       for (unsigned int d = 0; d < 3; ++d)
         {
-          cells[q][d] = static_cast<int>(std::floor((patches_[q].X[d] - corner_) / h_));
-          low_[d]     = std::min(low_[d], cells[q][d] - 2);
-          high[d]     = std::max(high[d], cells[q][d] + 2);
+          cells[q][d]   = static_cast<int>(std::floor((patches_[q].X[d] - corner_) / h_));
+          block_.low[d] = std::min(block_.low[d], cells[q][d] - 2);
+          high[d]       = std::max(high[d], cells[q][d] + 2);
         }
     for (unsigned int d = 0; d < 3; ++d)
-      size_[d] = high[d] - low_[d] + 1;
+      block_.size[d] = high[d] - block_.low[d] + 1;
 
-    start_.assign(std::size_t(size_[0]) * size_[1] * size_[2] + 1, 0);
+    start_.assign(block_.n_cells() + 1, 0);
     for (const Lattice &cell : cells)
-      ++start_[cell_number(cell) + 1];
+      ++start_[block_.number(cell) + 1];
     for (std::size_t i = 1; i < start_.size(); ++i)
       start_[i] += start_[i - 1];
     std::vector<unsigned int> next(start_);
@@ -39,7 +39,7 @@ namespace tanktread
     sorted_positions_.resize(patches_.size());
     for (std::size_t q = 0; q < patches_.size(); ++q)
       {
-        const unsigned int place = next[cell_number(cells[q])]++;
+        const unsigned int place = next[block_.number(cells[q])]++;
         order_[place]            = q;
         sorted_positions_[place] = patches_[q].X;
       }
@@ -52,14 +52,14 @@ namespace tanktread
     std::vector<char>    near(start_.size() - 1, 0);
     std::vector<Lattice> result;
     Lattice              cell, other;
-    for (cell[2] = low_[2] + 2; cell[2] < low_[2] + size_[2] - 2; ++cell[2])
-      for (cell[1] = low_[1] + 2; cell[1] < low_[1] + size_[1] - 2; ++cell[1])
-        for (cell[0] = low_[0] + 2; cell[0] < low_[0] + size_[0] - 2; ++cell[0])
-          if (start_[cell_number(cell)] < start_[cell_number(cell) + 1])
+    for (cell[2] = block_.low[2] + 2; cell[2] < block_.low[2] + block_.size[2] - 2; ++cell[2])
+      for (cell[1] = block_.low[1] + 2; cell[1] < block_.low[1] + block_.size[1] - 2; ++cell[1])
+        for (cell[0] = block_.low[0] + 2; cell[0] < block_.low[0] + block_.size[0] - 2; ++cell[0])
+          if (start_[block_.number(cell)] < start_[block_.number(cell) + 1])
             for (int n = 0; n < 27; ++n)
               {
                 other = {cell[0] + n % 3 - 1, cell[1] + n / 3 % 3 - 1, cell[2] + n / 9 - 1};
-                if (!std::exchange(near[cell_number(other)], 1))
+                if (!std::exchange(near[block_.number(other)], 1))
                   result.push_back(other);
               }
     return result;
@@ -74,8 +74,8 @@ namespace tanktread
     for (unsigned int d = 0; d < 3; ++d)
       {
         const int lower = node[d] >= 0 ? node[d] / 2 : (node[d] - 1) / 2; // the cell that contains the node, the upper one of two
-        first[d]        = std::max(lower - (node[d] % 2 == 0 ? 2 : 1), low_[d]);
-        last[d]         = std::min(lower + 1, low_[d] + size_[d] - 1);
+        first[d]        = std::max(lower - (node[d] % 2 == 0 ? 2 : 1), block_.low[d]);
+        last[d]         = std::min(lower + 1, block_.low[d] + block_.size[d] - 1);
       }
     const Eigen::Vector3d y(corner_ + 0.5 * h_ * node[0], corner_ + 0.5 * h_ * node[1], corner_ + 0.5 * h_ * node[2]);
     double                nearest = std::numeric_limits<double>::infinity();
@@ -85,8 +85,8 @@ namespace tanktread
         {
           if (first[0] > last[0])
             continue;
-          const unsigned int end = start_[cell_number({last[0], j, k}) + 1];
-          for (unsigned int i = start_[cell_number({first[0], j, k})]; i < end; ++i)
+          const unsigned int end = start_[block_.number({last[0], j, k}) + 1];
+          for (unsigned int i = start_[block_.number({first[0], j, k})]; i < end; ++i)
             {
               const double distance = (sorted_positions_[i] - y).squaredNorm();
               if (distance < nearest)

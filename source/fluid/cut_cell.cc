@@ -41,6 +41,7 @@ namespace tanktread
       double lagrange[n_gauss][n_gauss];     // coefficients by rising power of the functions that are one at a Gauss point
       double vv[n_gauss][6], dd[n_gauss][6]; // values times values, slopes times slopes of two quadratic functions
       double mv[n_gauss][6], md[n_gauss][6]; // linear function times value or slope of a quadratic one, at 3 j + a
+      double ordered[2][2][n_gauss][9];      // value or slope of one quadratic function times value or slope of another, at 3 b + a
 
       Tables()
       {
@@ -53,6 +54,14 @@ namespace tanktread
                 {
                   vv[g][pair] = v[a] * v[b];
                   dd[g][pair] = d[a] * d[b];
+                }
+            for (int b = 0; b < 3; ++b)
+              for (int a = 0; a < 3; ++a)
+                {
+                  ordered[0][0][g][3 * b + a] = v[b] * v[a];
+                  ordered[0][1][g][3 * b + a] = v[b] * d[a];
+                  ordered[1][0][g][3 * b + a] = d[b] * v[a];
+                  ordered[1][1][g][3 * b + a] = d[b] * d[a];
                 }
             for (int a = 0; a < 3; ++a)
               {
@@ -294,28 +303,29 @@ namespace tanktread
     /**
      * result[p1][p2][p3] += sum over Gauss points of weight t1[g1][p1] t2[g2][p2] t3[g3][p3]; one direction after the other.
      */
+    template <int n>
     void
     add_products(const CondensedQuadrature &quadrature,
-                 const double (&t1)[n_gauss][6],
-                 const double (&t2)[n_gauss][6],
-                 const double (&t3)[n_gauss][6],
-                 double (&result)[6][6][6])
+                 const double (&t1)[n_gauss][n],
+                 const double (&t2)[n_gauss][n],
+                 const double (&t3)[n_gauss][n],
+                 double (&result)[n][n][n])
     {
-      double x[n_gauss][n_gauss][6] = {}, y[n_gauss][6][6] = {};
+      double x[n_gauss][n_gauss][n] = {}, y[n_gauss][n][n] = {};
       for (int k = 0; k < n_gauss; ++k)
         for (int j = 0; j < n_gauss; ++j)
           for (int i = 0; i < n_gauss; ++i)
-            for (int p = 0; p < 6; ++p)
+            for (int p = 0; p < n; ++p)
               x[k][j][p] += quadrature.weights[k][j][i] * t1[i][p];
       for (int k = 0; k < n_gauss; ++k)
         for (int j = 0; j < n_gauss; ++j)
-          for (int p2 = 0; p2 < 6; ++p2)
-            for (int p1 = 0; p1 < 6; ++p1)
+          for (int p2 = 0; p2 < n; ++p2)
+            for (int p1 = 0; p1 < n; ++p1)
               y[k][p2][p1] += t2[j][p2] * x[k][j][p1];
       for (int k = 0; k < n_gauss; ++k)
-        for (int p3 = 0; p3 < 6; ++p3)
-          for (int p2 = 0; p2 < 6; ++p2)
-            for (int p1 = 0; p1 < 6; ++p1)
+        for (int p3 = 0; p3 < n; ++p3)
+          for (int p2 = 0; p2 < n; ++p2)
+            for (int p1 = 0; p1 < n; ++p1)
               result[p3][p2][p1] += t3[k][p3] * y[k][p2][p1];
     }
 
@@ -342,7 +352,40 @@ namespace tanktread
         }
       return result;
     }
+
+
+    void
+    set_gradient_products(const CondensedQuadrature &quadrature, GradientProducts &result)
+    {
+      for (int d = 0; d < 3; ++d)
+        for (int c = 0; c <= d; ++c)
+          {
+            double products[9][9][9] = {};
+            add_products(quadrature, tables.ordered[d == 0][c == 0], tables.ordered[d == 1][c == 1], tables.ordered[d == 2][c == 2], products);
+            for (int b = 0; b < 27; ++b)
+              for (int a = 0; a < 27; ++a)
+                {
+                  const double product    = products[3 * (b / 9) + a / 9][3 * (b / 3 % 3) + a / 3 % 3][3 * (b % 3) + a % 3];
+                  result[b][a][3 * d + c] = product;
+                  result[a][b][3 * c + d] = product;
+                }
+          }
+    }
   } // namespace
+
+
+  const GradientProducts &
+  whole_gradient_products()
+  {
+    static const GradientProducts result = [] {
+      CondensedQuadrature quadrature;
+      quadrature.add_box({0., 0., 0.}, 1.);
+      GradientProducts products;
+      set_gradient_products(quadrature, products);
+      return products;
+    }();
+    return result;
+  }
 
 
   const PartialCellMatrices &
@@ -358,11 +401,56 @@ namespace tanktread
 
 
   PartialCellMatrices
-  inside_matrices(const std::array<double, 27> &phi)
+  inside_matrices(const std::array<double, 27> &phi, GradientProducts *const products)
   {
     CondensedQuadrature quadrature;
     for (int corner = 0; corner < 8; ++corner)
       add_half_box(phi, corner, quadrature);
+    if (products != nullptr)
+      set_gradient_products(quadrature, *products);
     return matrices(quadrature);
+  }
+
+
+  namespace
+  {
+    CellWeights
+    flat(const CondensedQuadrature &quadrature)
+    {
+      CellWeights result;
+      for (int q = 0; q < 125; ++q)
+        result[q] = quadrature.weights[q / 25][q / 5 % 5][q % 5];
+      return result;
+    }
+  } // namespace
+
+
+  const CellWeights &
+  whole_weights()
+  {
+    static const CellWeights result = [] {
+      CondensedQuadrature quadrature;
+      quadrature.add_box({0., 0., 0.}, 1.);
+      return flat(quadrature);
+    }();
+    return result;
+  }
+
+
+  CellWeights
+  inside_weights(const std::array<double, 27> &phi)
+  {
+    CondensedQuadrature quadrature;
+    for (int corner = 0; corner < 8; ++corner)
+      add_half_box(phi, corner, quadrature);
+    return flat(quadrature);
+  }
+
+
+  const std::array<double, 5> &
+  fine_gauss_abscissae()
+  {
+    static const std::array<double, 5> result = {{gauss_points[0], gauss_points[1], gauss_points[2], gauss_points[3], gauss_points[4]}};
+    return result;
   }
 } // namespace tanktread

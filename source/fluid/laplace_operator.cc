@@ -41,11 +41,21 @@ namespace tanktread
 
   template <typename Number>
   void
+  LaplaceOperator<Number>::set_viscosity(const std::vector<double> &viscosities)
+  {
+    own_factors_ = viscosities;
+    for (std::size_t i = 0; i < own_factors_.size(); ++i)
+      own_factors_[i] *= space_.cell_sizes()[i];
+  }
+
+
+  template <typename Number>
+  void
   LaplaceOperator<Number>::apply(Number *const u, Number *const y) const
   {
     space_.update(u);
     std::fill(y, y + space_.full_size(), Number(0));
-    add_laplace(instructions_, {space_.n_cells(), space_.cell_sizes().data(), space_.cell_nodes(0), nullptr}, u, y);
+    add_laplace(instructions_, {space_.n_cells(), factors().data(), space_.cell_nodes(0), nullptr}, u, y);
     space_.collect(y);
   }
 
@@ -54,7 +64,7 @@ namespace tanktread
   std::vector<Number>
   LaplaceOperator<Number>::diagonal() const
   {
-    const std::vector<double> result = space_.diagonal(unit_cube_matrix(), 1);
+    const std::vector<double> result = space_.diagonal(unit_cube_matrix(), factors());
     return {result.begin(), result.end()};
   }
 

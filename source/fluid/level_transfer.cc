@@ -2,6 +2,7 @@
 // Part of Tanktread: interpolation of velocities from one rung of the mesh to the next, and its transpose.
 
 #include <tanktread/base/exceptions.h>
+#include <tanktread/fluid/cell_averages.h>
 #include <tanktread/fluid/level_transfer.h>
 
 #include <algorithm>
@@ -24,15 +25,19 @@ namespace tanktread
     };
     using Row = std::vector<Entry>;
 
+    constexpr std::size_t header = sizeof(Index) + 27; // bytes of a packed cell before its entries
+
     /** What the 27 nodes of a coarse cell follow from. */
     using CellRows = std::array<Row, 27>;
 
 
+    /** Number of the cell, lengths of its rows, the rows. */
     std::vector<char>
-    pack(const NodeSpace &space, const unsigned int cell)
+    pack(const NodeSpace &space, const unsigned int cell, const Index cell_number)
     {
       std::vector<Entry> entries;
-      std::vector<char>  result(27);
+      std::vector<char>  result(header);
+      std::memcpy(result.data(), &cell_number, sizeof(Index));
       for (unsigned int a = 0; a < 27; ++a)
         {
           const std::size_t  before = entries.size();
@@ -42,26 +47,30 @@ namespace tanktread
           else
             for (const auto &[master, weight] : space.masters(node))
               entries.push_back({weight, space.global_node(master)});
-          result[a] = static_cast<char>(entries.size() - before);
+          result[sizeof(Index) + a] = static_cast<char>(entries.size() - before);
         }
-      result.resize(27 + entries.size() * sizeof(Entry));
-      std::memcpy(result.data() + 27, entries.data(), entries.size() * sizeof(Entry));
+      result.resize(header + entries.size() * sizeof(Entry));
+      std::memcpy(result.data() + header, entries.data(), entries.size() * sizeof(Entry));
       return result;
     }
 
 
+    /** Returns the number of the cell. */
     template <typename Bytes>
-    void
+    Index
     unpack(const Bytes &bytes, CellRows &rows)
     {
-      const char *const data = &*bytes.begin();
+      const char *const data = &*bytes.begin() + sizeof(Index);
       const char       *next = data + 27;
+      Index             cell_number;
+      std::memcpy(&cell_number, &*bytes.begin(), sizeof(Index));
       for (unsigned int a = 0; a < 27; ++a)
         {
           rows[a].resize(static_cast<unsigned char>(data[a]));
           std::memcpy(rows[a].data(), next, rows[a].size() * sizeof(Entry));
           next += rows[a].size() * sizeof(Entry);
         }
+      return cell_number;
     }
 
 
@@ -159,8 +168,13 @@ namespace tanktread
     FluidMesh::Triangulation       &triangulation = mesh.triangulation();
     const std::vector<unsigned int> coarse_number = owned_cell_numbers(triangulation);
     // The cells that are packed are those of the mesh before.
-    const unsigned int handle =
-      triangulation.register_data_attach([&](const auto &cell, const auto) { return pack(coarse, coarse_number[cell->active_cell_index()]); }, true);
+    const Index        first  = first_cell(coarse);
+    const unsigned int handle = triangulation.register_data_attach(
+      [&](const auto &cell, const auto) {
+      const unsigned int number = coarse_number[cell->active_cell_index()];
+      return pack(coarse, number, first + number);
+      },
+      true);
     mesh.climb();
 
     const NodeSpace                &fine        = number_fine_nodes();
@@ -168,11 +182,13 @@ namespace tanktread
     RowCollector                    collector(fine.n_owned());
     CellRows                        rows;
     Row                             row;
+    std::vector<Index>              parent(fine.n_cells());
     triangulation.notify_ready_to_unpack(handle, [&](const auto &cell, const auto, const auto &bytes) {
-      unpack(bytes, rows);
+      const Index number = unpack(bytes, rows);
       if (!cell->has_children())
         {
-          const unsigned int *nodes = fine.cell_nodes(fine_number[cell->active_cell_index()]);
+          const unsigned int *nodes                      = fine.cell_nodes(fine_number[cell->active_cell_index()]);
+          parent[fine_number[cell->active_cell_index()]] = number;
           for (unsigned int a = 0; a < 27; ++a)
             if (collector.wants(nodes[a]))
               collector.add(nodes[a], rows[a]);
@@ -180,7 +196,8 @@ namespace tanktread
         }
       for (unsigned int child = 0; child < 8; ++child)
         {
-          const unsigned int *nodes = fine.cell_nodes(fine_number[cell->child(child)->active_cell_index()]);
+          const unsigned int *nodes                                    = fine.cell_nodes(fine_number[cell->child(child)->active_cell_index()]);
+          parent[fine_number[cell->child(child)->active_cell_index()]] = number;
           for (unsigned int a = 0; a < 27; ++a)
             if (collector.wants(nodes[a]))
               {
@@ -189,7 +206,9 @@ namespace tanktread
               }
         }
     });
-    return collector.sorted();
+    InterpolationRows result = collector.sorted();
+    result.parent            = std::move(parent);
+    return result;
   }
 
 

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tanktread
 {
@@ -22,6 +23,7 @@ namespace tanktread
   Multigrid<Number>::start(const FluidMesh &mesh)
   {
     levels_.clear();
+    smallest_viscosity_ = largest_viscosity_ = 1.;
     levels_.emplace_back();
     levels_.back().space = std::make_shared<NodeSpace>(ScalarSpace(mesh, 2, true), 3);
     coarse_solver_       = std::make_unique<CoarseSolver<Number>>(mesh, *levels_.back().space);
@@ -41,6 +43,7 @@ namespace tanktread
       return *level.space;
     });
     level.transfer                = std::make_unique<LevelTransfer<Number>>(rows, *coarse, *level.space);
+    level.averages                = std::make_unique<CellAverages>(rows.parent, *coarse, *level.space);
     finish_level();
   }
 
@@ -61,8 +64,15 @@ namespace tanktread
     level.laplace = std::make_unique<LaplaceOperator<Number>>(*level.space);
     for (auto *array : {&level.x, &level.b, &level.residual, &level.direction})
       array->resize(level.space->full_size(), Number(0));
-    if (levels_.size() == 1)
-      return; // solved directly
+    if (levels_.size() > 1) // the first one is solved directly
+      prepare_smoother(level);
+  }
+
+
+  template <typename Number>
+  void
+  Multigrid<Number>::prepare_smoother(Level &level)
+  {
     level.inverse_diagonal = level.laplace->diagonal();
     for (Number &d : level.inverse_diagonal)
       d = Number(1) / d;
@@ -73,11 +83,70 @@ namespace tanktread
 
   template <typename Number>
   void
+  Multigrid<Number>::set_viscosity(const std::vector<double> &viscosities)
+  {
+    std::vector<double> values = viscosities;
+    for (unsigned int l = levels_.size(); l-- > 0;)
+      {
+        Level &level = levels_[l];
+        level.laplace->set_viscosity(values);
+        if (l == 0)
+          break;
+        prepare_smoother(level);
+        values = (*level.averages)(values);
+      }
+    const MPI_Comm communicator = levels_.front().space->partitioner()->get_mpi_communicator();
+    double         smallest = std::numeric_limits<double>::max(), largest = 0.; // a rank may have no cell
+    for (const double mu : values)
+      {
+        smallest = std::min(smallest, mu);
+        largest  = std::max(largest, mu);
+      }
+    smallest_viscosity_ = dealii::Utilities::MPI::min(smallest, communicator);
+    largest_viscosity_  = dealii::Utilities::MPI::max(largest, communicator);
+  }
+
+
+  template <typename Number>
+  void
+  Multigrid<Number>::solve_first_rung()
+  {
+    // The eigenvalues of the direct solver times the matrix lie between the smallest and the largest viscosity.
+    Level        &level  = levels_.front();
+    const double  center = 0.5 * (largest_viscosity_ + smallest_viscosity_), half = 0.5 * (largest_viscosity_ - smallest_viscosity_), t = center / half;
+    Number *const x = level.x.data(), *const b = level.b.data(), *const residual = level.residual.data(), *const direction = level.direction.data();
+    coarse_solver_->solve(b, x);
+    const std::size_t n = 4 * std::size_t(level.space->n_owned());
+    if (center == 1. && half == 0.)
+      return;
+    for (std::size_t j = 0; j < n; ++j)
+      x[j] = direction[j] = x[j] / Number(center);
+    double rho = 1. / t;
+    for (double before = 1., polynomial = t; polynomial < 10.;)
+      {
+        level.laplace->apply(x, residual);
+        for (std::size_t j = 0; j < n; ++j)
+          residual[j] = b[j] - residual[j];
+        coarse_solver_->solve(residual, residual);
+        const double next = 1. / (2. * t - rho);
+        const Number f_d = next * rho, f_r = 2. * next / half;
+        for (std::size_t j = 0; j < n; ++j)
+          x[j] += direction[j] = f_d * direction[j] + f_r * residual[j];
+        rho                           = next;
+        const double polynomial_after = 2. * t * polynomial - before;
+        before                        = polynomial;
+        polynomial                    = polynomial_after;
+      }
+  }
+
+
+  template <typename Number>
+  void
   Multigrid<Number>::cycle(const unsigned int l)
   {
     Level &level = levels_[l];
     if (l == 0)
-      return coarse_solver_->solve(level.b.data(), level.x.data());
+      return solve_first_rung();
     const ChebyshevRange range{options_.degree, level.largest_eigenvalue / options_.range, level.largest_eigenvalue};
     const auto           apply = [&](Number *x, Number *y) { level.laplace->apply(x, y); };
     chebyshev<4>(apply, range, arrays(level), true);

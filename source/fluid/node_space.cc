@@ -371,11 +371,21 @@ namespace tanktread
   std::vector<double>
   NodeSpace::diagonal(const std::vector<double> &cell_matrix, const int power) const
   {
+    std::vector<double> factors;
+    for (const double h : cell_size_)
+      factors.push_back(std::pow(h, power));
+    return diagonal(cell_matrix, factors);
+  }
+
+
+  std::vector<double>
+  NodeSpace::diagonal(const std::vector<double> &cell_matrix, const std::vector<double> &factors) const
+  {
     std::vector<double> sums(n_local_, 0.);
     for (unsigned int cell = 0; cell < n_cells(); ++cell)
       {
         const unsigned int *nodes  = cell_nodes(cell);
-        const double        factor = std::pow(cell_size_[cell], power);
+        const double        factor = factors[cell];
         if (std::all_of(nodes, nodes + nodes_per_cell_, [&](const unsigned int node) { return is_free(node); }))
           for (unsigned int a = 0; a < nodes_per_cell_; ++a)
             sums[nodes[a]] += factor * cell_matrix[(nodes_per_cell_ + 1) * a];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Part of Tanktread: the discrete Stokes equations of one viscosity.
+// Part of Tanktread: the discrete Stokes equations.
 
 #include <tanktread/fluid/stokes_operator.h>
 
@@ -26,6 +26,21 @@ namespace tanktread
 
 
   void
+  StokesOperator::set_viscosity(const Viscosity &viscosity)
+  {
+    viscosity_ = &viscosity;
+    cut_sizes_.clear();
+    cut_nodes_.clear();
+    for (const unsigned int cell : viscosity.cut().cells)
+      {
+        const unsigned int *const nodes = space_.velocity->cell_nodes(cell);
+        cut_sizes_.push_back(space_.velocity->cell_sizes()[cell]);
+        cut_nodes_.insert(cut_nodes_.end(), nodes, nodes + 27);
+      }
+  }
+
+
+  void
   StokesOperator::vmult(FluidBlockVector &dst, const FluidBlockVector &src) const
   {
     const NodeSpace &u = *space_.velocity, &p = *space_.pressure;
@@ -35,7 +50,14 @@ namespace tanktread
     p.update(p_.data());
     std::fill(y_u_.begin(), y_u_.end(), 0.);
     std::fill(y_p_.begin(), y_p_.end(), 0.);
-    add_stokes(instructions_, cubes(space_), u_.data(), p_.data(), y_u_.data(), y_p_.data());
+    if (viscosity_ == nullptr)
+      add_stokes(instructions_, cubes(space_), u_.data(), p_.data(), y_u_.data(), y_p_.data());
+    else
+      {
+        add_viscous_stokes(instructions_, cubes(space_), viscosity_->at_points().data(), viscosity_->least(), u_.data(), p_.data(), y_u_.data(), y_p_.data());
+        const unsigned int n_cut = cut_sizes_.size();
+        add_weighted_viscous(instructions_, {n_cut, cut_sizes_.data(), cut_nodes_.data(), nullptr}, viscosity_->cut().weights.data(), u_.data(), y_u_.data());
+      }
     u.collect(y_u_.data());
     p.collect(y_p_.data());
     u.store(y_u_.data(), dst.block(velocity_block), false);

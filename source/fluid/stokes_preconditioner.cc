@@ -4,6 +4,7 @@
 #include <tanktread/fluid/stokes_preconditioner.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace tanktread
 {
@@ -27,12 +28,34 @@ namespace tanktread
     : space_(space)
     , multigrid_(multigrid)
     , instructions_(best_instruction_set())
+    , mass_sizes_(space.pressure->cell_sizes())
     , load_(space.velocity->full_size())
   {
-    const NodeSpace &p = *space.pressure;
     for (auto *array : {&p_, &r_p_, &residual_, &direction_})
-      array->resize(p.full_size());
-    for (const double d : p.diagonal(pressure_mass_matrix(), 3))
+      array->resize(space.pressure->full_size());
+    prepare_pressure_mass();
+  }
+
+
+  void
+  StokesPreconditioner::set_viscosity(const Viscosity &viscosity)
+  {
+    multigrid_.set_viscosity(viscosity.means());
+    for (std::size_t i = 0; i < mass_sizes_.size(); ++i)
+      mass_sizes_[i] = space_.pressure->cell_sizes()[i] / std::cbrt(viscosity.means()[i]);
+    prepare_pressure_mass();
+  }
+
+
+  void
+  StokesPreconditioner::prepare_pressure_mass()
+  {
+    const NodeSpace    &p = *space_.pressure;
+    std::vector<double> factors;
+    for (const double h : mass_sizes_)
+      factors.push_back(std::pow(h, 3));
+    inverse_diagonal_.clear();
+    for (const double d : p.diagonal(pressure_mass_matrix(), factors))
       inverse_diagonal_.push_back(1. / d);
     // On cubes the diagonally scaled trilinear mass matrix has its eigenvalues in [1/8, 27/8]; hanging nodes change little.
     const auto   apply   = [&](float *x, float *y) { apply_pressure_mass(x, y); };
@@ -53,7 +76,7 @@ namespace tanktread
   {
     space_.pressure->update(p);
     std::fill(y, y + space_.pressure->full_size(), 0.f);
-    add_pressure_mass(cubes(space_), p, y);
+    add_pressure_mass({space_.pressure->n_cells(), mass_sizes_.data(), nullptr, space_.pressure->cell_nodes(0)}, p, y);
     space_.pressure->collect(y);
   }
 

@@ -26,6 +26,15 @@ namespace tanktread
     }
 
 
+    std::string
+    number(const double value)
+    {
+      std::ostringstream text;
+      text << value;
+      return text.str();
+    }
+
+
     RunDescription
     description(const Parameters &parameters, const unsigned int n_ranks)
     {
@@ -36,7 +45,11 @@ namespace tanktread
       run.G              = 1. / parameters.scene.surface_young_modulus();
       run.khat           = parameters.scene.bending_modulus() / parameters.scene.surface_young_modulus();
       run.box_side       = parameters.scene.box_side;
-      run.left_out       = {"inertia (Re = 0)", "variable viscosity (ratio 1: Laplace form, each velocity component by itself)"};
+      run.left_out       = {"inertia (Re = 0)"};
+      if (parameters.scene.viscosity_ratio == 1.)
+        run.left_out.push_back("variable viscosity (ratio 1: Laplace form, each velocity component by itself)");
+      else
+        run.included.push_back("variable viscosity (ratio " + number(parameters.scene.viscosity_ratio) + ": strain form, cells that the shell cuts integrated part by part)");
       if (parameters.shell.thickness == 0.)
         run.left_out.push_back("shell thickness (0)");
       if (parameters.solver.interface == Interface::plain)
@@ -50,11 +63,11 @@ namespace tanktread
 
 
     SubdivisionSurface
-    make_coupling_surface(const FittedShape &shape, const Interface interface, const FluidMesh &mesh)
+    make_coupling_surface(const FittedShape &shape, const Interface interface, const double viscosity_ratio, const FluidMesh &mesh)
     {
       return {shape.topology,
               coupling_quadrature(shape.topology, shape.control_points, interface, mesh.cell_size(mesh.finest_level())),
-              interface == Interface::enriched ? Derivatives::second : Derivatives::first};
+              interface == Interface::enriched || viscosity_ratio != 1. ? Derivatives::second : Derivatives::first};
     }
 
 
@@ -79,11 +92,11 @@ namespace tanktread
     , shell_(surface_, parameters.shell, {parameters.scene.surface_young_modulus(), parameters.scene.bending_modulus()}, shape_.control_points)
     , distributed_shell_(shell_, shape_.topology, communicator)
     , fluid_(communicator, parameters.scene.box_side, parameters.fluid_mesh)
-    , coupling_surface_(make_coupling_surface(shape_, parameters.solver.interface, fluid_.mesh()))
+    , coupling_surface_(make_coupling_surface(shape_, parameters.solver.interface, parameters.scene.viscosity_ratio, fluid_.mesh()))
     , coupling_(coupling_surface_, area_weights(coupling_surface_, shape_.control_points), parameters.solver.interface)
     , view_{shape_.topology, surface_, shell_, enclosed_volume(surface_, shape_.control_points)}
     , flow_{parameters.scene.flow == Flow::shear ? 1. : 0.}
-    , solver_(parameters.solver, distributed_shell_, surface_, coupling_, view_.initial_volume, flow_, timings_)
+    , solver_(parameters.solver, distributed_shell_, surface_, coupling_, view_.initial_volume, flow_, timings_, parameters.scene.viscosity_ratio)
     , stepper_(parameters.time, parameters.solver.coupling, parameters.scene.end_time, solver_, log_)
     , next_fields_(parameters.output.field_interval)
   {
@@ -174,11 +187,10 @@ namespace tanktread
   Simulation::record(const StepResult &step, const bool last)
   {
     const Timings::Scope scope(timings_, "Output");
-    Observables          o = observe(view_, fluid_, state_);
-    // Work of the shell on the disturbance flow, which that dissipates; the pressure jump works on no volume flux.
-    const ControlPoints velocity = solver_.shell_velocity(state_);
-    o.dissipation                = state_.force.cwiseProduct(velocity - flow_.velocity(state_.x)).sum();
-    ellipsoid_                   = o.ellipsoid;
+    Observables          o        = observe(view_, fluid_, state_);
+    const ControlPoints  velocity = solver_.shell_velocity(state_);
+    o.dissipation                 = solver_.dissipation(state_);
+    ellipsoid_                    = o.ellipsoid;
     if (!phase_)
       phase_ = std::make_unique<PhaseAngles>(shape_.topology, state_.x, o.ellipsoid, o.theta_over_pi);
     phase_->update(state_.x, o.ellipsoid, o.theta_over_pi);

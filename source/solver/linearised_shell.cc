@@ -15,10 +15,10 @@ namespace tanktread
   {
     /** Z = c0 M_s + c1 L_s of LinearisedShell, for one component. */
     SparseMatrix
-    inverse_mobility(const SubdivisionSurface &surface, const ControlPoints &x, const double h)
+    inverse_mobility(const SubdivisionSurface &surface, const ControlPoints &x, const double h, const double viscosity)
     {
       const double k1 = 2., k2 = dealii::numbers::PI / h;
-      const double c0 = 4. * k1 * k2 / (k1 + k2), c1 = 4. / (k1 + k2);
+      const double c0 = 4. * viscosity * k1 * k2 / (k1 + k2), c1 = 4. * viscosity / (k1 + k2);
       SparseMatrix Z = mass_matrix(surface, c0 * area_weights(surface, x));
       Z.coeffs() += c1 * laplace_beltrami(surface, x).coeffs();
       return Z;
@@ -55,7 +55,7 @@ namespace tanktread
     if (choice.tangent == Tangent::exact)
       stiffness_.coeffs() -= state.pressure_jump * volume_hessian_.coeffs();
     if (!implicit_shell.serves(tau_))
-      implicit_shell.renew(inverse_mobility(surface, state.x, choice.h), choice.flow_gradient, stiffness_, tau_);
+      implicit_shell.renew(inverse_mobility(surface, state.x, choice.h, choice.viscosity), choice.flow_gradient, stiffness_, tau_);
 
     gamma.coeffs() *= tau_;
     if (std::abs(state.volume_shift) <= choice.h / (2. * dealii::numbers::PI))

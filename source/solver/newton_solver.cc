@@ -36,7 +36,8 @@ namespace tanktread
                              Coupling                 &coupling,
                              const double              volume,
                              const UndisturbedFlow     flow,
-                             Timings                  &timings)
+                             Timings                  &timings,
+                             const double              viscosity_ratio)
     : parameters_(parameters)
     , shell_(shell)
     , surface_(surface)
@@ -45,14 +46,47 @@ namespace tanktread
     , flow_(flow)
     , timings_(timings)
     , implicit_shell_(shell.communicator())
-  {}
+    , viscosity_ratio_(viscosity_ratio)
+  {
+    coupling.set_viscosity_contrast({viscosity_ratio, flow.gradient()});
+  }
 
 
   void
-  NewtonSolver::attach(const Fluid &fluid)
+  NewtonSolver::attach(Fluid &fluid)
   {
     fluid_ = &fluid;
     coupling_.attach(fluid.space());
+    viscosity_x_.resize(0, 3);
+  }
+
+
+  void
+  NewtonSolver::set_viscosity(const ControlPoints &x)
+  {
+    if (viscosity_ratio_ == 1. || (viscosity_x_.rows() == x.rows() && viscosity_x_ == x))
+      return;
+    const Timings::Scope scope(timings_, "Viscosity");
+    viscosity_x_ = x;
+    fluid_->set_viscosity(coupling_.viscosity(x));
+    dealii::Tensor<2, 3> gradient;
+    for (unsigned int c = 0; c < 3; ++c)
+      for (unsigned int d = 0; d < 3; ++d)
+        gradient[c][d] = flow_.gradient()(c, d);
+    undisturbed_load_.reinit(fluid_->space().velocity->partitioner());
+    fluid_->viscosity()->add_excess_stress(fluid_->space(), gradient, undisturbed_load_);
+  }
+
+
+  double
+  NewtonSolver::dissipation(const State &state) const
+  {
+    double result = state.force.cwiseProduct(shell_velocity(state) - flow_.velocity(state.x)).sum();
+    if (viscosity_ratio_ == 1.)
+      return result;
+    const Eigen::Matrix3d strain_rate = 0.5 * (flow_.gradient() + flow_.gradient().transpose());
+    return result + undisturbed_load_ * state.fluid.block(velocity_block) + coupling_.undisturbed_work(state.force) +
+      2. * strain_rate.squaredNorm() * (viscosity_ratio_ - 1.) * volume_;
   }
 
 
@@ -69,8 +103,10 @@ namespace tanktread
 
     fluid_->space().reinit(r.fluid);
     fluid_->stokes().vmult(r.fluid, state.fluid);
+    if (viscosity_ratio_ != 1.)
+      r.fluid.block(velocity_block) += undisturbed_load_;
     ExtendedForces forces;
-    coupling_.extend(state.force, forces);
+    coupling_.extend_whole(state.force, forces);
     const ControlPoints velocity = coupling_.interpolate(state.fluid, forces) + flow_.velocity(state.x);
     coupling_.spread(-1., state.force + state.pressure_jump * v, forces, r.fluid);
     r.shell_speed = shell_speed(r.fluid);
@@ -98,7 +134,9 @@ namespace tanktread
   ControlPoints
   NewtonSolver::shell_velocity(const State &state) const
   {
-    return coupling_.interpolate(state.fluid, state.force) + flow_.velocity(state.x);
+    ExtendedForces forces;
+    coupling_.extend_whole(state.force, forces);
+    return coupling_.interpolate(state.fluid, forces) + flow_.velocity(state.x);
   }
 
 
@@ -177,7 +215,7 @@ namespace tanktread
     const Timings::Scope           scope(timings_, "Linear solver");
     const unsigned int             n_points = r.x.rows();
     const MonolithicOperator       matrix(fluid_->stokes(), shell, &timings_);
-    const MonolithicPreconditioner preconditioner(fluid_->preconditioner(), shell, volume_, &timings_);
+    const MonolithicPreconditioner preconditioner(fluid_->preconditioner(), shell, volume_ / viscosity_ratio_, &timings_);
 
     const ControlPoints dx0 = shell.displacement_of_residual(r.x, r.volume);
     FluidBlockVector    rhs = monolithic_vector(fluid_->space(), n_points), solution(rhs);
@@ -261,19 +299,27 @@ namespace tanktread
 
 
   bool
-  NewtonSolver::follow_shell(State &state, unsigned int &n_moves)
+  NewtonSolver::follow_shell(State &state, unsigned int &n_moves, unsigned int &n_sweeps)
   {
     // Positions within a small part of a cell, which shrinks with the solver's tolerance, are as good as any. A node of the fluid that changes sides makes the residual jump, and now and
     // then shell and node would chase each other for ever: then a larger part has to do.
-    constexpr unsigned int patience  = 8;
+    constexpr unsigned int patience = 8, max_sweeps = 6;
     const double           tolerance = n_moves < patience ? std::min(0.002 * finest_cell(), 100. * parameters_.newton_tolerance) : 0.02 * finest_cell();
     const bool             moves     = trial_points() == Points::stay && coupling_.distance(state.x) > tolerance;
+    const bool             mixes     = viscosity_ratio_ != 1. && (state.x - viscosity_x_).rowwise().norm().maxCoeff() > tolerance;
     if (moves)
+      move_points(state);
+    if (mixes)
+      set_viscosity(state.x);
+    n_moves += moves || mixes;
+    // The jumps' viscous part is a contraction that need not end below the solver's tolerance.
+    const bool sweeps = viscosity_ratio_ != 1. && trial_points() == Points::stay && n_sweeps < max_sweeps;
+    if (sweeps)
       {
-        move_points(state);
-        ++n_moves;
+        coupling_.update_viscous_forces(state.fluid, state.force);
+        ++n_sweeps;
       }
-    return moves;
+    return moves || mixes || sweeps;
   }
 
 
@@ -292,10 +338,16 @@ namespace tanktread
     State        trial = state;
     try
       {
-        Residual     r        = residual(trial, xhat, tau, Points::follow);
+        if (viscosity_ratio_ != 1.)
+          {
+            set_viscosity(trial.x);
+            move_points(trial);
+            coupling_.update_viscous_forces(trial.fluid, trial.force);
+          }
+        Residual     r        = residual(trial, xhat, tau, viscosity_ratio_ == 1. ? Points::follow : Points::stay);
         double       length   = dealii::Utilities::MPI::broadcast(fluid_->mesh().communicator(), tau * speed(r, tau), 0); // about that of the next displacement
         bool         cautious = false;
-        unsigned int n_moves  = 1;
+        unsigned int n_moves = 1, n_sweeps = 0;
         for (bool solved = false; !solved;)
           {
             if (report.newton_iterations == parameters_.max_newton_iterations)
@@ -313,7 +365,8 @@ namespace tanktread
                                                          motion_accuracy(length / tau),
                                                       complete ? PointDerivatives::complete : PointDerivatives::frozen,
                                                          tangent_,
-                                                         flow_.gradient()});
+                                                         flow_.gradient(),
+                                                         0.5 * (1. + viscosity_ratio_)});
             if (report.residuals.empty())
               report.residuals.push_back(norm(r, tau));
             const std::string failure = iterate(trial, r, shell, xhat, report);
@@ -327,9 +380,9 @@ namespace tanktread
                   throw NumericalError(failure);
                 cautious = tangent_ == Tangent::positive;
               }
-            if (follow_shell(trial, n_moves))
+            if (follow_shell(trial, n_moves, n_sweeps))
               {
-                r                       = residual(trial, xhat, tau, Points::stay);
+                r                       = residual(trial, xhat, tau, trial_points());
                 report.residuals.back() = norm(r, tau);
               }
             solved = is_solved(r, report.residuals.back());
@@ -349,14 +402,31 @@ namespace tanktread
   unsigned int
   NewtonSolver::solve_flow(State &state)
   {
-    state.force = shell_.force(state.x);
+    constexpr unsigned int n_sweeps = 3; // for the viscous part of the jumps
+    state.force                     = shell_.force(state.x);
+    set_viscosity(state.x);
+    unsigned int iterations = solve_with_fixed_jumps(state, Points::follow);
+    for (unsigned int i = 0; i < n_sweeps && viscosity_ratio_ != 1. && coupling_.interface() == Interface::enriched; ++i)
+      {
+        coupling_.update_viscous_forces(state.fluid, state.force);
+        iterations += solve_with_fixed_jumps(state, Points::stay);
+      }
+    return iterations;
+  }
+
+
+  unsigned int
+  NewtonSolver::solve_with_fixed_jumps(State &state, const Points points)
+  {
     State          increment;
-    const Residual r = residual(state, state.x, 0., Points::follow);
+    const Residual r = residual(state, state.x, 0., points);
     // Relative to the loads of the shell and of unit pressure, not to what the initial guess has left of them.
     FluidBlockVector load;
     fluid_->space().reinit(load);
     coupling_.spread(state.force, load);
     coupling_.spread(volume_gradient(surface_, state.x), load);
+    if (viscosity_ratio_ != 1.)
+      load.block(velocity_block) += undisturbed_load_;
     const double wanted = std::max(1e-10, 1e-2 * parameters_.newton_tolerance) * load.l2_norm(), given = std::hypot(r.fluid.l2_norm(), r.flux);
     if (given <= wanted)
       return 0;

@@ -113,7 +113,8 @@ TEST(Parameters, WrongValuesAreRefused)
 {
   expect_error("Scene/Shear number G=0", "allowed: a number > 0");
   expect_error("Scene/Reduced bending modulus=-1", "allowed: a number >= 0");
-  expect_error("Scene/Viscosity ratio=5", "not available in this version, allowed: 1");
+  expect_error("Scene/Viscosity ratio=0.001", "allowed: a number from 0.01 to 100");
+  expect_error("Scene/Viscosity ratio=200", "allowed: a number from 0.01 to 100");
   expect_error("Scene/Reynolds number=0.1", "not available in this version, allowed: 0");
   expect_error("Scene/Flow=poiseuille", "allowed: one of shear, quiescent");
   expect_error("Scene/Flow=quiescent", "Scene/Reduced bending modulus is 0");
@@ -141,8 +142,8 @@ TEST(Parameters, ShapeFromFileNeedsAFile)
 
 TEST(Parameters, ErrorsOfAllSectionsComeTogetherWithTheirLines)
 {
-  const std::string message = error_of({}, "subsection Scene\nset Viscosity ratio = 2\nend\nsubsection Output\nset Checkpoint interval = 3\nend\n");
-  EXPECT_NE(message.find("x.prm:2: Scene/Viscosity ratio is 2"), std::string::npos) << message;
+  const std::string message = error_of({}, "subsection Scene\nset Reynolds number = 2\nend\nsubsection Output\nset Checkpoint interval = 3\nend\n");
+  EXPECT_NE(message.find("x.prm:2: Scene/Reynolds number is 2"), std::string::npos) << message;
   EXPECT_NE(message.find("x.prm:5: Output/Checkpoint interval is 3"), std::string::npos) << message;
 }
 

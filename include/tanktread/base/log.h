@@ -23,6 +23,7 @@ namespace tanktread
     double       khat     = 0.;   // kappa_B / (a^2 E h)
     double       box_side = 0.;   // in a
 
+    std::vector<std::string> included; // physics that the scene asks for beyond the simplest
     std::vector<std::string> left_out; // what the scene does not need: "inertia (Re = 0)"
   };
 

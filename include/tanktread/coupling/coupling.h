@@ -7,6 +7,7 @@
 #include <tanktread/base/vector4.h>
 #include <tanktread/coupling/interface.h>
 #include <tanktread/coupling/jump_enrichment.h>
+#include <tanktread/coupling/shell_viscosity.h>
 #include <tanktread/fluid/point_interpolation.h>
 #include <tanktread/surface/mass_inverse.h>
 #include <tanktread/surface/subdivision_surface.h>
@@ -42,6 +43,13 @@ namespace tanktread
      */
     Coupling(const SubdivisionSurface &surface, Eigen::VectorXd reference_weights, Interface interface = Interface::plain);
 
+    /** To be called before attach(), for another viscosity inside. */
+    void
+    set_viscosity_contrast(const ViscosityContrast &contrast)
+    {
+      contrast_ = contrast;
+    }
+
     /** To be called for every new fluid mesh, before move(). Keeps `space` by reference. */
     void
     attach(const TaylorHoodSpace &space);
@@ -61,6 +69,10 @@ namespace tanktread
       return interpolation_->local_points().size();
     }
 
+    /** Viscosity of the fluid's cells with the shell at x. The surface needs second derivatives. Collective. */
+    Viscosity
+    viscosity(const ControlPoints &x) const;
+
     /** S x as points of the fluid. */
     std::vector<dealii::Point<3>>
     points(const ControlPoints &x) const;
@@ -68,6 +80,18 @@ namespace tanktread
     /** P f as the enrichment needs it, for several of the calls below; nothing with the plain interface. Collective. */
     void
     extend(const ControlPoints &f, ExtendedForces &forces) const;
+
+    /** Extended forces of the shell in the whole flow: with what another viscosity inside and the undisturbed flow contribute, which is not linear in f. See JumpEnrichment. Collective. */
+    void
+    extend_whole(const ControlPoints &f, ExtendedForces &forces) const;
+
+    /** Makes that contribution the one of the flow `fields` with nodal forces f. Nothing with one viscosity or the plain interface. Collective. */
+    void
+    update_viscous_forces(const FluidBlockVector &fields, const ControlPoints &f);
+
+    /** What psi adds to 2 ((mu - 1) eps(u_inf), eps(u_h)). Collective. */
+    double
+    undisturbed_work(const ControlPoints &f) const;
 
     /** M J fields: S^T W Phi u, and what the enrichment adds. */
     ControlPoints
@@ -176,10 +200,12 @@ namespace tanktread
 
     const SubdivisionSurface           &surface_;
     Interface                           interface_;
+    ViscosityContrast                   contrast_;
     Eigen::VectorXd                     weights_;
     SparseMatrix                        mass_;
     MassInverse                         mass_inverse_;
     MPI_Comm                            communicator_ = MPI_COMM_NULL;
+    const TaylorHoodSpace              *space_        = nullptr;
     std::unique_ptr<PointInterpolation> interpolation_;
     std::unique_ptr<JumpEnrichment>     enrichment_; // only with Interface::enriched
     std::vector<FacePoints>             local_faces_;

@@ -6,6 +6,7 @@
 
 #include <tanktread/base/vector4.h>
 #include <tanktread/coupling/surface_distance.h>
+#include <tanktread/coupling/transposed_part.h>
 #include <tanktread/fluid/cut_cell.h>
 #include <tanktread/fluid/point_interpolation.h>
 
@@ -17,8 +18,16 @@ namespace tanktread
   /** Forces of the shell as the enrichment needs them. */
   struct ExtendedForces
   {
-    std::vector<double>           at_points;   // force times area at the local points, 3 numbers each
-    dealii::AlignedVector<double> at_vertices; // f_t and f_n at the vertices of this rank's cells
+    std::vector<double>           at_points;     // force times area at the local points, 3 numbers each
+    dealii::AlignedVector<double> at_vertices;   // f_t and f_n at the vertices of this rank's cells
+    bool                          whole = false; // with all that does not depend on the forces, see JumpEnrichment::complete()
+  };
+
+  /** Another viscosity inside, and the undisturbed flow that it disturbs. */
+  struct ViscosityContrast
+  {
+    double          ratio         = 1.; // inside over outside
+    Eigen::Matrix3d flow_gradient = Eigen::Matrix3d::Zero();
   };
 
   /**
@@ -35,13 +44,20 @@ namespace tanktread
    *     velocity    U   = R^T (u_h, p_h) + Q f,      <g, Q f> = <g, psi_f> + <f, psi_g> - a(psi_f, psi_g) + (eta_f, div psi_g) + (eta_g, div psi_f)
    *
    * so the power f . U is what the flow u_h + psi dissipates, exactly. This class adds what is more than <f, v> and its transpose. A constant pressure is removed from p_h and from the load, of which it would know
-   * by errors of the quadrature only. Viscosity mu = 1.
+   * by errors of the quadrature only.
+   *
+   * Viscosity mu = 1 outside and lambda inside: the conditions at the shell are then
+   *
+     *     [du/dn] = -2/(1 + lambda) (f_t + g_t),   [p] = f_n + g_n,   g = (1 - lambda) (G + G^T) n
+   *
+   * with G the mean of the velocity gradients on both sides, the undisturbed flow's included. So f + g takes the place of f in psi (with mu the mean of the viscosities) and eta, g being that of the flow before: a
+   * fixed point. It is no force and no unknown: what it contributes is constant in the directions R f and Q f, like the load -2 ((mu - 1) eps(u_inf), eps(v)) of the undisturbed flow.
    */
   class JumpEnrichment
   {
   public:
     /** Keeps `space` by reference. Collective. */
-    explicit JumpEnrichment(const TaylorHoodSpace &space);
+    explicit JumpEnrichment(const TaylorHoodSpace &space, const ViscosityContrast &contrast = {});
 
     /**
      * Computes everything that depends on where the shell is.
@@ -54,6 +70,22 @@ namespace tanktread
     /** Makes forces.at_vertices from forces.at_points, in the order of `points`. Collective. */
     void
     extend(ExtendedForces &forces) const;
+
+    /** Adds g and marks the forces as whole, the undisturbed flow included; with one viscosity nothing. */
+    void
+    complete(ExtendedForces &forces) const;
+
+    /**
+     * Makes g that of the flow with these gradients.
+     *
+     * @param gradients of u_inf + u_h at the local points, 9 numbers each, entry 3 c + d being du_c/dx_d. @param forces whole ones. Collective.
+     */
+    void
+    update_viscous_forces(const double *gradients, const ExtendedForces &forces);
+
+    /** 2 ((mu - 1) eps(u_inf), eps(psi)). Collective. */
+    double
+    undisturbed_work(const ExtendedForces &forces) const;
 
     /** load += factor R f without <f, v>. Collective. */
     void
@@ -96,6 +128,7 @@ namespace tanktread
       std::array<std::array<std::array<float, 4>, 8>, 8>  divergence;  // [j][v]: (M_j, grad psi_v)
       std::array<std::array<float, 8>, 8>                 self;        // [v][w]: a(psi_v, psi_w)
       std::array<std::array<std::array<float, 4>, 8>, 8>  self_mixed;  // [v][j]: (eta_j, grad psi_v)
+      std::array<std::array<float, 4>, 8>                 stress;      // [v]: 2 ((mu - 1) eps(u_inf), eps(psi_v))
     };
     static constexpr unsigned int no_points = static_cast<unsigned int>(-1);
 
@@ -120,6 +153,13 @@ namespace tanktread
     set_sides(const std::vector<double> &phi);
     void
     add_cut_cell(unsigned int cell, const NodeDistances &nodes);
+    /** What another viscosity inside needs in addition. @param q amplitudes at the nodes for unit values at the vertices. */
+    void
+    add_viscous_part(CutCell                                     &cut,
+                     const NodeDistances                         &nodes,
+                     const PartialCellMatrices                   &in,
+                     const GradientProducts                      &products,
+                     const std::array<std::array<double, 8>, 27> &q);
     void
     set_weights(const Eigen::VectorXd &area_weights);
 
@@ -132,7 +172,7 @@ namespace tanktread
     void
     average() const;
     void
-    add_self_response(const CutCell &cut, const VertexForces &f, const std::vector<double> &forces, VertexForces &r, std::vector<double> &values) const;
+    add_self_response(const CutCell &cut, const VertexForces &f, const ExtendedForces &forces, VertexForces &r, std::vector<double> &values) const;
     void
     add_field_response(const CutCell &cut, const double *u, const double *p, VertexForces &r) const;
     /** Pressure of `fields` without its mean. */
@@ -140,18 +180,23 @@ namespace tanktread
     load_pressure(const FluidBlockVector &fields) const;
 
     const TaylorHoodSpace                &space_;
+    const ViscosityContrast               contrast_;
     CellLocator                           locator_;
     NodeSpace                             extension_;          // linear functions with four numbers a vertex
     std::vector<double>                   pressure_integrals_; // of the pressure functions, owned ones
     const PointInterpolation             *points_ = nullptr;
     std::vector<CutCell>                  cut_cells_;
+    std::vector<TransposedPart>           transposed_;   // of each cut cell; none with one viscosity
     std::vector<unsigned int>             nearby_cells_; // whose nodes' distances are known
     VertexSides                           sides_;
     std::vector<PointGroup>               groups_; // by cell, ascending
     std::vector<unsigned int>             group_of_cell_;
     std::vector<unsigned int>             point_order_;
-    std::vector<std::array<double, 8>>    hats_, psi_; // of points, in that order: M_v, and psi_v on the shell (in cut cells)
-    std::vector<Vector4>                  normals_;    // in that order
+    std::vector<std::array<double, 8>>    hats_, psi_;     // of points, in that order: M_v, and psi_v on the shell (in cut cells)
+    std::vector<Vector4>                  normals_;        // in that order
+    std::vector<std::array<Vector4, 8>>   slopes_;         // of points, in that order: mean of grad psi_v on both sides, in cut cells; none with one viscosity
+    std::vector<double>                   areas_;          // of points, in that order; none with one viscosity
+    dealii::AlignedVector<double>         viscous_values_; // g_t and g_n at the vertices
     std::vector<double>                   inverse_weights_;
     mutable dealii::AlignedVector<double> extension_values_, pressure_values_;
   };

@@ -14,6 +14,31 @@ namespace tanktread
   /** Position of a finest cell, or twice that of a node, counted from the box's lower corner and not wrapped periodically. */
   using Lattice = std::array<int, 3>;
 
+  /** The finest cells low[d] <= i_d < low[d] + size[d]. */
+  struct LatticeBlock
+  {
+    Lattice low, size;
+
+    bool
+    contains(const Lattice &cell) const
+    {
+      for (unsigned int d = 0; d < 3; ++d)
+        if (cell[d] < low[d] || cell[d] >= low[d] + size[d])
+          return false;
+      return true;
+    }
+    std::size_t
+    number(const Lattice &cell) const
+    {
+      return (std::size_t(cell[2] - low[2]) * size[1] + (cell[1] - low[1])) * size[0] + (cell[0] - low[0]);
+    }
+    std::size_t
+    n_cells() const
+    {
+      return std::size_t(size[0]) * size[1] * size[2];
+    }
+  };
+
   /**
    * Sorts the surface's points into the finest cells of the mesh, so that those near a node are found without a search. Distances are those from the nearest of the points within the cells that
    * are closer than two cells to the node, by its quadratic_patch; they depend on the points alone, not on the mesh or the ranks.
@@ -37,16 +62,17 @@ namespace tanktread
       return patches_;
     }
 
-  private:
-    std::size_t
-    cell_number(const Lattice &cell) const
+    /** Of cells about all points, with two cells to spare. */
+    const LatticeBlock &
+    block() const
     {
-      return (std::size_t(cell[2] - low_[2]) * size_[1] + (cell[1] - low_[1])) * size_[0] + (cell[0] - low_[0]);
+      return block_;
     }
 
+  private:
     double                       h_, corner_;
     std::vector<QuadraticPatch>  patches_;
-    Lattice                      low_, size_;       // of the block of cells around all points, with two cells to spare
+    LatticeBlock                 block_;
     std::vector<unsigned int>    start_;            // of each cell's points in the next
     std::vector<unsigned int>    order_;            // points, cell by cell
     std::vector<Eigen::Vector3d> sorted_positions_; // in that order

@@ -62,6 +62,20 @@ namespace tanktread
   template <typename Number>
   void
   add_viscous(InstructionSet set, const Cubes &cubes, const Number *viscosity, const Number *u, Number *y);
+
+  /**
+   * y += 2 sum over 5 x 5 x 5 Gauss points of weight eps(u) : eps(v).
+   *
+   * @param weights 125 numbers a cube, x fastest, for an edge of length one.
+   */
+  template <typename Number>
+  void
+  add_weighted_viscous(InstructionSet set, const Cubes &cubes, const Number *weights, const Number *u, Number *y);
+
+  /** As add_stokes with (viscosity grad u, grad v) + ((viscosity - least) grad u^T, grad v) in place of the Laplace matrix. */
+  template <typename Number>
+  void
+  add_viscous_stokes(InstructionSet set, const Cubes &cubes, const Number *viscosity, Number least, const Number *u, const Number *p, Number *y_u, Number *y_p);
 } // namespace tanktread
 
 #endif

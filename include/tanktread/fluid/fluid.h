@@ -25,6 +25,7 @@ namespace tanktread
       if (!mesh_.aim_at(points))
         return false;
       // What stands on the mesh must go before the mesh changes.
+      viscosity_.reset();
       preconditioner_.reset();
       stokes_.reset();
       space_.reset();
@@ -36,6 +37,22 @@ namespace tanktread
       stokes_         = std::make_unique<StokesOperator>(*space_);
       preconditioner_ = std::make_unique<StokesPreconditioner>(*space_, multigrid_);
       return true;
+    }
+
+    /** One viscosity everywhere until this is called, and again after a change of mesh. Collective. */
+    void
+    set_viscosity(Viscosity viscosity)
+    {
+      viscosity_ = std::make_unique<Viscosity>(std::move(viscosity));
+      stokes_->set_viscosity(*viscosity_);
+      preconditioner_->set_viscosity(*viscosity_);
+    }
+
+    /** Null if it is 1 everywhere. */
+    const Viscosity *
+    viscosity() const
+    {
+      return viscosity_.get();
     }
 
     const FluidMesh &
@@ -70,6 +87,7 @@ namespace tanktread
     std::unique_ptr<TaylorHoodSpace>      space_;
     std::unique_ptr<StokesOperator>       stokes_;
     std::unique_ptr<StokesPreconditioner> preconditioner_;
+    std::unique_ptr<Viscosity>            viscosity_;
   };
 } // namespace tanktread
 

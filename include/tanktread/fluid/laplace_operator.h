@@ -9,12 +9,16 @@
 
 namespace tanktread
 {
-  /** (grad u, grad v) for each velocity component on the free nodes, on full arrays (see NodeSpace). `space` is kept by reference. */
+  /** (mu grad u, grad v) for each velocity component on the free nodes, on full arrays (see NodeSpace); mu is 1 or one number a cell. `space` is kept by reference. */
   template <typename Number>
   class LaplaceOperator
   {
   public:
     explicit LaplaceOperator(const NodeSpace &space);
+
+    /** @param viscosities one number a cell. */
+    void
+    set_viscosity(const std::vector<double> &viscosities);
 
     /** y = A u for owned nodes; updates the rest of u, and what y has beyond its owned nodes is void. Collective. */
     void
@@ -31,8 +35,16 @@ namespace tanktread
     }
 
   private:
+    /** What the unit cube's matrix is multiplied by: mu h, one number a cell. */
+    const std::vector<double> &
+    factors() const
+    {
+      return own_factors_.empty() ? space_.cell_sizes() : own_factors_;
+    }
+
     const NodeSpace     &space_;
     const InstructionSet instructions_;
+    std::vector<double>  own_factors_; // empty with the viscosity 1
   };
 } // namespace tanktread
 

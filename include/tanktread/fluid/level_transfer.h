@@ -19,6 +19,8 @@ namespace tanktread
     std::vector<std::size_t>                     start; // n_owned + 1
     std::vector<dealii::types::global_dof_index> node;
     std::vector<double>                          weight;
+    std::vector<dealii::types::global_dof_index>
+      parent; // number of the coarser cell, counted over all ranks, that each owned cell of the finer mesh lies in or is
   };
 
   /**

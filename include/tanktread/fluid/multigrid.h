@@ -4,6 +4,7 @@
 #ifndef tanktread_fluid_multigrid_h
 #define tanktread_fluid_multigrid_h
 
+#include <tanktread/fluid/cell_averages.h>
 #include <tanktread/fluid/chebyshev.h>
 #include <tanktread/fluid/coarse_solver.h>
 #include <tanktread/fluid/laplace_operator.h>
@@ -36,6 +37,15 @@ namespace tanktread
     /** Lets the mesh climb one rung and keeps the way between. Collective. */
     void
     climb(FluidMesh &mesh);
+
+    /**
+     * Makes the V-cycle one for (mu grad u, grad v). Cells of coarser rungs take the mean of mu over their volume. On the first rung the direct solver of constant viscosity preconditions a
+     * Chebyshev iteration, as long as what mu varies there asks for.
+     *
+     * @param viscosities mu of each cell of the last rung. Collective.
+     */
+    void
+    set_viscosity(const std::vector<double> &viscosities);
 
     /** Array for the right-hand side on the last rung: owned entries of a full array. */
     Number *
@@ -78,6 +88,7 @@ namespace tanktread
       std::shared_ptr<const NodeSpace>         space;
       std::unique_ptr<LaplaceOperator<Number>> laplace;
       std::unique_ptr<LevelTransfer<Number>>   transfer; // from the level before
+      std::unique_ptr<CellAverages>            averages; // for the level before
       std::vector<Number>                      inverse_diagonal;
       double                                   largest_eigenvalue = 0.;
       dealii::AlignedVector<Number>            x, b, residual, direction; // full arrays
@@ -85,6 +96,11 @@ namespace tanktread
 
     void
     finish_level();
+    /** Diagonal and largest eigenvalue. */
+    void
+    prepare_smoother(Level &level);
+    void
+    solve_first_rung();
     static ChebyshevArrays<Number>
     arrays(Level &level);
     void
@@ -95,6 +111,7 @@ namespace tanktread
     Options                               options_;
     std::vector<Level>                    levels_;
     std::unique_ptr<CoarseSolver<Number>> coarse_solver_;
+    double                                smallest_viscosity_ = 1., largest_viscosity_ = 1.; // on the first rung
   };
 } // namespace tanktread
 

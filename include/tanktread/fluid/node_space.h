@@ -165,6 +165,10 @@ namespace tanktread
     std::vector<double>
     diagonal(const std::vector<double> &cell_matrix, int power) const;
 
+    /** The same with a factor for each cell. */
+    std::vector<double>
+    diagonal(const std::vector<double> &cell_matrix, const std::vector<double> &factors) const;
+
   private:
     void
     add_constrained_diagonal(const unsigned int *nodes, double factor, const std::vector<double> &cell_matrix, std::vector<double> &diagonal) const;

@@ -6,18 +6,26 @@
 
 #include <tanktread/fluid/cube_kernel.h>
 #include <tanktread/fluid/taylor_hood_space.h>
+#include <tanktread/fluid/viscosity.h>
 
 namespace tanktread
 {
   /**
    * mu (grad u, grad v) - (p, div v), -(q, div u): with one viscosity in the whole box the same flow as the strain form, and the velocity components do not know of each other but
    * through the pressure. All cells being cubes, nothing is assembled. The viscosity of the outer fluid is the unit, mu = 1.
+   *
+   * With a Viscosity mu that varies from m upwards the strain form 2 (mu eps(u), eps(v)) in all cells, without m (grad u^T, grad v), which is m (div u, div v) and does nothing to a solenoidal u:
+   * (mu grad u, grad v) + ((mu - m) grad u^T, grad v), positive definite point by point, and what it was where mu = m.
    */
   class StokesOperator
   {
   public:
     /** Keeps `space` by reference. */
     explicit StokesOperator(const TaylorHoodSpace &space);
+
+    /** @param viscosity kept by reference. */
+    void
+    set_viscosity(const Viscosity &viscosity);
 
     /** dst = [A, -B^T; -B, 0] src on blocks 0 and 1; blocks from 2 on are not touched. Collective. */
     void
@@ -32,7 +40,10 @@ namespace tanktread
   private:
     const TaylorHoodSpace                &space_;
     const InstructionSet                  instructions_;
-    mutable dealii::AlignedVector<double> u_, p_, y_u_, y_p_; // full arrays
+    const Viscosity                      *viscosity_ = nullptr; // null: 1 everywhere
+    std::vector<double>                   cut_sizes_;           // of its cut cells
+    std::vector<unsigned int>             cut_nodes_;           // 27 for each of them
+    mutable dealii::AlignedVector<double> u_, p_, y_u_, y_p_;   // full arrays
   };
 
   /** The cells of a pair of spaces for the kernels. */

@@ -20,6 +20,10 @@ namespace tanktread
     /** Keeps both by reference; the multigrid has climbed to the mesh of `space`. Collective. */
     StokesPreconditioner(const TaylorHoodSpace &space, Multigrid<float> &multigrid);
 
+    /** Weights the pressures' mass with 1/mu and gives the multigrid the cells' means of mu. Collective. */
+    void
+    set_viscosity(const Viscosity &viscosity);
+
     /** dst = P^{-1} src on blocks 0 and 1. Collective. @param timings where to add what its parts take, or null. */
     void
     vmult(FluidBlockVector &dst, const FluidBlockVector &src, Timings *timings = nullptr) const;
@@ -36,12 +40,16 @@ namespace tanktread
     solve_pressure(FluidBlockVector &dst, const FluidBlockVector &src) const;
     void
     apply_pressure_mass(float *p, float *y) const;
+    /** Diagonal of the pressure mass and the range of its eigenvalues. */
+    void
+    prepare_pressure_mass();
     ChebyshevArrays<float>
     arrays() const;
 
     const TaylorHoodSpace               &space_;
     Multigrid<float>                    &multigrid_;
     const InstructionSet                 instructions_;
+    std::vector<double>                  mass_sizes_;       // of cubes with the pressure mass matrix of the cells: h mu^{-1/3}
     std::vector<float>                   inverse_diagonal_; // of the pressure mass matrix
     ChebyshevRange                       range_;
     mutable dealii::AlignedVector<float> p_, r_p_, residual_, direction_, load_; // full arrays

@@ -44,6 +44,7 @@ namespace tanktread
     PointDerivatives derivatives   = PointDerivatives::complete;
     Tangent          tangent       = Tangent::exact; // positive: without the negative stiffness of a shell under pressure from its sides, and without -pi H_V
     Eigen::Matrix3d  flow_gradient = Eigen::Matrix3d::Zero(); // grad u_inf
+    double           viscosity     = 1.;                      // mean of inside and outside
   };
 
   /**
@@ -58,7 +59,7 @@ namespace tanktread
    *
    *     Z = c0 M_s + c1 L_s,   c0 = 4 mu k1 k2/(k1 + k2),   c1 = 4 mu/(k1 + k2),   k1 = 2/a,   k2 = pi/h,
    *
-   * (mass and Laplace-Beltrami matrices on the current surface) stands for the inverse of the surface mobility J A^{-1} J^T: c0 + c1 k^2 equals the symbol 4 mu k of
+   * (mass and Laplace-Beltrami matrices on the current surface, mu the mean of the viscosities inside and outside) stands for the inverse of the surface mobility J A^{-1} J^T: c0 + c1 k^2 equals the symbol 4 mu k of
    * that inverse for a plane at both ends of the resolved wave numbers. Eliminating the fluid exactly would leave about
    * (1 + tau K (1 - tau grad u_inf)^{-1} J A^{-1} J^T) dG, so after the multiplication the row is close to dG = ... for any stiffness. ImplicitShell holds this operator, and it may come from an earlier linearisation.
    *

@@ -50,22 +50,26 @@ namespace tanktread
    * time: that of J P^{-1} (r_u, r_p) with the Stokes preconditioner P, |r_x| / tau, |(Z_tau + tau (K - pi H_V))^{-1} r_F| with the operator that ImplicitShell holds, r_pi / (3 V0) and r_V / (3 V0 tau), the first three as root mean squares over the
    * control points. (The Euclidean norm of the load vector r_u would not do: moving the shell within a cell redistributes loads among the
    * nodes, which changes the vector much and the flow little.)
+   *
+   * With another viscosity inside, A is the strain form with it, and the undisturbed flow has the load -2 ((mu - 1) eps(u_inf), eps(v)). The viscosity stays while the linear system is solved and during line search; after an
+   * iteration it follows the shell as the points of the enriched interface do. So does what the viscosities contribute to the jumps of that interface (JumpEnrichment), which after some sweeps stays for the rest of the step.
    */
   class NewtonSolver
   {
   public:
-    /** All arguments are kept by reference. `volume` is V0. */
+    /** All arguments of class type but the flow are kept by reference. `volume` is V0. @param viscosity_ratio inside over outside. */
     NewtonSolver(const SolverParameters   &parameters,
                  const DistributedShell   &shell,
                  const SubdivisionSurface &surface,
                  Coupling                 &coupling,
                  double                    volume,
                  UndisturbedFlow           flow,
-                 Timings                  &timings);
+                 Timings                  &timings,
+                 double                    viscosity_ratio = 1.);
 
-    /** To be called for every new fluid mesh. */
+    /** To be called for every new fluid mesh; the fluid is kept by reference and gets the viscosity. */
     void
-    attach(const Fluid &fluid);
+    attach(Fluid &fluid);
 
     /**
      * Advances `state`, which holds the initial guess, to the solution. If the report says that it did not converge, `state` is as it was. Collective.
@@ -90,6 +94,13 @@ namespace tanktread
     /** Velocity of the control points, J u + u_inf; the coupling's points must be at state.x, as they are after a solve. Collective. */
     ControlPoints
     shell_velocity(const State &state) const;
+
+    /**
+     * What more than the undisturbed flow dissipates, the integral of 2 mu eps : eps of the whole flow over the box minus that of the undisturbed flow: the shell's work on the disturbance and, with another viscosity inside,
+     * 2 ((mu - 1) eps(u_inf), eps(u)) + 2 ((mu - 1) eps(u_inf), eps(u_inf)). Collective.
+     */
+    double
+    dissipation(const State &state) const;
 
     /** Makes the pressure of `state` that of the sides on which the coupling's points have the vertices; a state of another time can then be combined with those of the present. Collective. */
     void
@@ -117,9 +128,18 @@ namespace tanktread
     /** What line search does with the points: those of the enriched interface stay, at fixed positions J is the transpose of R and the linear system their exact derivative. */
     Points
     trial_points() const;
-    /** With the enriched interface: moves the points after the shell unless they are close enough, so that no solution is accepted with points elsewhere. Returns true if they moved. */
+    /**
+     * With the enriched interface or another viscosity inside: moves points and viscosity after the shell unless they are close enough, so that no solution is accepted with them elsewhere, and makes the viscous part of the
+     * jumps that of the present flow. Returns true if anything has changed.
+     */
     bool
-    follow_shell(State &state, unsigned int &n_moves);
+    follow_shell(State &state, unsigned int &n_moves, unsigned int &n_sweeps);
+    /** Viscosity of a shell at x, and the load of the undisturbed flow with it. */
+    void
+    set_viscosity(const ControlPoints &x);
+    /** solve_flow() with the viscous part of the jumps as it is. Returns the linear iterations. */
+    unsigned int
+    solve_with_fixed_jumps(State &state, Points points);
     /** Part of the norm that needs no linearisation. */
     double
     speed(const Residual &r, double tau) const;
@@ -162,7 +182,10 @@ namespace tanktread
     ImplicitShell             implicit_shell_;
     Tangent                   tangent_ = Tangent::exact; // to start a step with
     KrylovBasis               krylov_basis_;
-    const Fluid              *fluid_ = nullptr;
+    const double              viscosity_ratio_;
+    ControlPoints             viscosity_x_;      // where the shell was when the viscosity was set
+    FluidVector               undisturbed_load_; // 2 ((mu - 1) eps(u_inf), eps(v)); empty with one viscosity
+    Fluid                    *fluid_ = nullptr;
   };
 } // namespace tanktread
 

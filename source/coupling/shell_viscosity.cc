@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: the viscosity of the liquids inside and outside the shell, cell by cell.
+
+#include <tanktread/coupling/shell_viscosity.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tanktread
+{
+  namespace
+  {
+    enum class Side : char
+    {
+      inside,
+      outside,
+      near // the shell: in a cell that contains points of it or touches one that does
+    };
+
+
+    /** Sides of all finest cells of the block about the shell. */
+    class Sides
+    {
+    public:
+      explicit Sides(const SurfaceDistance &distance)
+        : distance_(distance)
+        , sides_(distance.block().n_cells(), Side::inside)
+      {
+        for (const Lattice &cell : distance.cells_nearby())
+          sides_[distance.block().number(cell)] = Side::near;
+        fill_outside();
+      }
+
+      Side
+      at(const Lattice &cell) const
+      {
+        return distance_.block().contains(cell) ? sides_[distance_.block().number(cell)] : Side::outside;
+      }
+
+    private:
+      /** What can be reached from a corner of the block, which has a layer of cells that are not near, is outside. */
+      void
+      fill_outside()
+      {
+        const LatticeBlock  &block = distance_.block();
+        std::vector<Lattice> front{block.low};
+        sides_[block.number(block.low)] = Side::outside;
+        while (!front.empty())
+          {
+            const Lattice cell = front.back();
+            front.pop_back();
+            for (unsigned int d = 0; d < 3; ++d)
+              for (const int step : {-1, 1})
+                {
+                  Lattice other = cell;
+                  other[d] += step;
+                  if (block.contains(other) && sides_[block.number(other)] == Side::inside)
+                    {
+                      sides_[block.number(other)] = Side::outside;
+                      front.push_back(other);
+                    }
+                }
+          }
+      }
+
+      const SurfaceDistance &distance_;
+      std::vector<Side>      sides_;
+    };
+  } // namespace
+
+
+  ShellViscosity::ShellViscosity(const TaylorHoodSpace &space)
+    : space_(space)
+  {
+    const FluidMesh &mesh = space.mesh;
+    for (const auto &cell : mesh.triangulation().active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          const int size     = 1 << (mesh.finest_level() - cell->level());
+          Lattice   position = mesh.key(cell).position;
+          for (int &i : position)
+            i *= size;
+          cells_.push_back({position, size});
+        }
+  }
+
+
+  Viscosity
+  ShellViscosity::operator()(const SurfaceDistance &distance, const double ratio) const
+  {
+    const double        least = std::min(1., ratio);
+    const Sides         sides(distance);
+    CutCells            cut;
+    const LatticeBlock &block = distance.block();
+    const int           n     = space_.mesh.n_rung_0() << space_.mesh.finest_level();
+    const NodeSpace    &nodes = *space_.velocity;
+    // The image of a cell that may lie in the block.
+    const auto image = [&](Lattice cell) {
+      for (unsigned int d = 0; d < 2; ++d)
+        cell[d] = block.low[d] + ((cell[d] - block.low[d]) % n + n) % n;
+      return cell;
+    };
+    std::vector<double> phi(nodes.n_local(), std::nan("")), mu(27 * cells_.size(), 1.);
+    for (std::size_t i = 0; i < cells_.size(); ++i)
+      {
+        const auto &[position, size] = cells_[i];
+        double *const values         = &mu[27 * i];
+        const auto    centre         = image({position[0] + size / 2, position[1] + size / 2, position[2] + size / 2});
+        Side          side           = sides.at(centre);
+        // A cell twice as large may touch the shell's neighbourhood, not be all of it.
+        for (int k = 0; size == 2 && side == Side::near && k < 8; ++k)
+          side = sides.at(image({position[0] + k % 2, position[1] + k / 2 % 2, position[2] + k / 4}));
+        if (size > 1 && side == Side::near)
+          side = distance.at({2 * centre[0], 2 * centre[1], 2 * centre[2]}) < 0. ? Side::inside : Side::outside;
+        if (side != Side::near)
+          {
+            std::fill(values, values + 27, side == Side::inside ? ratio : 1.);
+            continue;
+          }
+        std::array<double, 27> distances;
+        for (int a = 0; a < 27; ++a)
+          {
+            const unsigned int node  = nodes.cell_nodes(i)[a];
+            double            &value = phi[node];
+            if (std::isnan(value) || node + 1 == nodes.n_local()) // the last place is that of all wall nodes
+              value = distance.at({2 * centre[0] + a % 3, 2 * centre[1] + a / 3 % 3, 2 * centre[2] + a / 9});
+            distances[a] = value;
+          }
+        const auto n_inside = std::count_if(distances.begin(), distances.end(), [](const double d) { return d < 0.; });
+        std::fill(values, values + 27, n_inside == 27 ? ratio : n_inside == 0 ? 1. : least);
+        if (n_inside == 0 || n_inside == 27)
+          continue;
+        for (double &d : distances)
+          d /= nodes.cell_sizes()[i];
+        const CellWeights inside = inside_weights(distances), &whole = whole_weights();
+        cut.cells.push_back(i);
+        for (unsigned int q = 0; q < 125; ++q)
+          cut.weights.push_back(ratio > 1. ? (ratio - 1.) * inside[q] : (1. - ratio) * (whole[q] - inside[q]));
+      }
+    return {std::move(mu), least, std::move(cut)};
+  }
+} // namespace tanktread
