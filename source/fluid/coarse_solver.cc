@@ -47,13 +47,12 @@ namespace tanktread
   {
     const int   n = mesh.n_rung_0(), n_x = 2 * n, n_z = 2 * n - 1;
     const Modes periodic = modes(n, mesh.cell_size(0), true), wall = modes(n, mesh.cell_size(0), false);
-    periodic_modes_ = periodic.vectors.cast<Number>();
-    wall_modes_     = wall.vectors.cast<Number>();
+    periodic_modes_      = periodic.vectors.cast<Number>();
+    wall_modes_          = wall.vectors.cast<Number>();
+    periodic_eigenvalue_ = periodic.values;
+    wall_eigenvalue_     = wall.values;
     inverse_eigenvalue_.resize(n_x * n_x * n_z);
-    for (int k = 0; k < n_z; ++k)
-      for (int j = 0; j < n_x; ++j)
-        for (int i = 0; i < n_x; ++i)
-          inverse_eigenvalue_[i + n_x * (j + n_x * k)] = 1. / (periodic.values[i] + periodic.values[j] + wall.values[k]);
+    set_shift(0.);
     values_.resize(3 * inverse_eigenvalue_.size());
 
     unsigned int cell_number = 0;
@@ -66,6 +65,18 @@ namespace tanktread
             if (nodes[a] < space.n_owned())
               place_[nodes[a]] = (2 * position[0] + a % 3) % n_x + n_x * ((2 * position[1] + a / 3 % 3) % n_x + n_x * (2 * position[2] + a / 9 - 1));
         }
+  }
+
+
+  template <typename Number>
+  void
+  CoarseSolver<Number>::set_shift(const double shift)
+  {
+    const Eigen::Index n_x = periodic_eigenvalue_.size(), n_z = wall_eigenvalue_.size();
+    for (Eigen::Index k = 0; k < n_z; ++k)
+      for (Eigen::Index j = 0; j < n_x; ++j)
+        for (Eigen::Index i = 0; i < n_x; ++i)
+          inverse_eigenvalue_[i + n_x * (j + n_x * k)] = 1. / (periodic_eigenvalue_[i] + periodic_eigenvalue_[j] + wall_eigenvalue_[k] + shift);
   }
 
 

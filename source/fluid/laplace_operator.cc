@@ -11,8 +11,9 @@ namespace tanktread
 {
   namespace
   {
+    /** Row by row: Laplace and mass matrix with these factors. */
     std::vector<double>
-    unit_cube_matrix()
+    unit_cube_matrix(const double laplace, const double mass)
     {
       const double                 size = 1.;
       std::array<unsigned int, 27> nodes;
@@ -21,11 +22,12 @@ namespace tanktread
       std::vector<double> result(27 * 27);
       for (unsigned int b = 0; b < 27; ++b)
         {
-          std::array<double, 108> u = {}, y = {};
+          std::array<double, 108> u = {}, Ku = {}, sum = {};
           u[4 * b] = 1.;
-          add_laplace(InstructionSet::baseline, cube, u.data(), y.data());
+          add_laplace(InstructionSet::baseline, cube, u.data(), Ku.data());
+          add_helmholtz(InstructionSet::baseline, cube, 1., u.data(), sum.data());
           for (unsigned int a = 0; a < 27; ++a)
-            result[27 * a + b] = y[4 * a];
+            result[27 * a + b] = laplace * Ku[4 * a] + mass * (sum[4 * a] - Ku[4 * a]);
         }
       return result;
     }
@@ -45,7 +47,11 @@ namespace tanktread
   {
     space_.update(u);
     std::fill(y, y + space_.full_size(), Number(0));
-    add_laplace(instructions_, {space_.n_cells(), space_.cell_sizes().data(), space_.cell_nodes(0), nullptr}, u, y);
+    const Cubes cells{space_.n_cells(), space_.cell_sizes().data(), space_.cell_nodes(0), nullptr};
+    if (shift_ == 0.)
+      add_laplace(instructions_, cells, u, y);
+    else
+      add_helmholtz(instructions_, cells, Number(shift_), u, y);
     space_.collect(y);
   }
 
@@ -54,7 +60,13 @@ namespace tanktread
   std::vector<Number>
   LaplaceOperator<Number>::diagonal() const
   {
-    const std::vector<double> result = space_.diagonal(unit_cube_matrix(), 1);
+    std::vector<double> result = space_.diagonal(unit_cube_matrix(1., 0.), 1);
+    if (shift_ != 0.)
+      {
+        const std::vector<double> mass = space_.diagonal(unit_cube_matrix(0., shift_), 3);
+        for (std::size_t i = 0; i < result.size(); ++i)
+          result[i] += mass[i];
+      }
     return {result.begin(), result.end()};
   }
 

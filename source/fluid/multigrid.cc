@@ -62,7 +62,30 @@ namespace tanktread
     for (auto *array : {&level.x, &level.b, &level.residual, &level.direction})
       array->resize(level.space->full_size(), Number(0));
     if (levels_.size() == 1)
-      return; // solved directly
+      coarse_solver_->set_shift(shift_);
+    else
+      prepare_smoother(level);
+  }
+
+
+  template <typename Number>
+  void
+  Multigrid<Number>::set_shift(const double shift)
+  {
+    if (shift == shift_)
+      return;
+    shift_ = shift;
+    coarse_solver_->set_shift(shift);
+    for (std::size_t l = 1; l < levels_.size(); ++l)
+      prepare_smoother(levels_[l]);
+  }
+
+
+  template <typename Number>
+  void
+  Multigrid<Number>::prepare_smoother(Level &level)
+  {
+    level.laplace->set_shift(shift_);
     level.inverse_diagonal = level.laplace->diagonal();
     for (Number &d : level.inverse_diagonal)
       d = Number(1) / d;

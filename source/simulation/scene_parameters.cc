@@ -27,7 +27,10 @@ namespace tanktread
                       Double(positive));
     prm.add_parameter("Reduced bending modulus", reduced_bending_modulus, "khat = kappa_B / (a^2 E h).", Double(0.));
     prm.add_parameter("Viscosity ratio", viscosity_ratio, "Viscosity inside over viscosity outside. In this version 1.", Double(positive));
-    prm.add_parameter("Reynolds number", reynolds_number, "Re = rho gamma a^2 / mu. In this version 0: Stokes flow.", Double(0.));
+    prm.add_parameter("Reynolds number",
+                      reynolds_number,
+                      "Re = rho gamma a^2 / mu with shear, rho kappa_B / (mu^2 a) without, the same density everywhere; 0: Stokes flow.",
+                      Double(0.));
     prm.add_parameter("Box side", box_side, "Side of the cube, in a; walls at z = -side/2 and side/2, periodic in x and y.", Double(3.));
     prm.add_parameter("End time", end_time, "The run ends at this time.", Double(0.));
     prm.leave_subsection();
@@ -39,8 +42,6 @@ namespace tanktread
     std::ostringstream message;
     if (viscosity_ratio != 1.)
       message << "Scene/Viscosity ratio is " << viscosity_ratio << "; not available in this version, allowed: 1";
-    else if (reynolds_number != 0.)
-      message << "Scene/Reynolds number is " << reynolds_number << "; not available in this version, allowed: 0";
     else if (flow == Flow::quiescent && reduced_bending_modulus == 0.)
       message << "Scene/Reduced bending modulus is 0; allowed with Scene/Flow = quiescent: a number > 0 (time is in units of mu a^3 / kappa_B)";
     if (!message.str().empty())

@@ -7,6 +7,7 @@
 #include <tanktread/base/exceptions.h>
 #include <tanktread/base/mpi_errors.h>
 #include <tanktread/base/output_folder.h>
+#include <tanktread/fluid/field_transfer.h>
 #include <tanktread/simulation/simulation.h>
 
 #include <algorithm>
@@ -36,7 +37,10 @@ namespace tanktread
       run.G              = parameters.scene.shear_number;
       run.khat           = parameters.scene.reduced_bending_modulus;
       run.box_side       = parameters.scene.box_side;
-      run.left_out       = {"inertia (Re = 0)", "variable viscosity (ratio 1: Laplace form, each velocity component by itself)", "shell thickness (0)"};
+      run.Re             = parameters.scene.reynolds_number;
+      run.left_out       = {"variable viscosity (ratio 1: Laplace form, each velocity component by itself)", "shell thickness (0)"};
+      if (run.Re == 0.)
+        run.left_out.insert(run.left_out.begin(), "inertia (Re = 0)");
       if (parameters.solver.interface == Interface::plain)
         run.left_out.push_back("the kink of the velocity and the jump of the pressure inside the cells that the shell cuts (Interface plain)");
       if (parameters.scene.bending_modulus() == 0.)
@@ -82,7 +86,7 @@ namespace tanktread
     , coupling_(coupling_surface_, area_weights(coupling_surface_, shape_.control_points), parameters.solver.interface)
     , view_{shape_.topology, surface_, shell_, enclosed_volume(surface_, shape_.control_points)}
     , flow_{parameters.scene.flow == Flow::shear ? 1. : 0.}
-    , solver_(parameters.solver, distributed_shell_, surface_, coupling_, view_.initial_volume, flow_, timings_)
+    , solver_(parameters.solver, distributed_shell_, surface_, coupling_, view_.initial_volume, flow_, timings_, parameters.scene.reynolds_number)
     , stepper_(parameters.time, parameters.solver.coupling, parameters.scene.end_time, solver_, log_)
     , next_fields_(parameters.output.field_interval)
   {
@@ -101,11 +105,27 @@ namespace tanktread
   void
   Simulation::refine_around_shell()
   {
-    const Timings::Scope scope(timings_, "Fluid mesh and multigrid");
+    const Timings::Scope                 scope(timings_, "Fluid mesh and multigrid");
+    std::unique_ptr<const FieldTransfer> flows;
+    if (solver_.has_inertia() && n_steps_ > 0)
+      flows = std::make_unique<FieldTransfer>(fluid_.space(), stepper_.flows(state_));
     fluid_.adapt(coupling_.points(state_.x));
     solver_.attach(fluid_);
+    if (flows)
+      return flows->interpolate(fluid_.space(), stepper_.flows(state_));
     stepper_.forget_flow();
     fluid_.space().reinit(state_.fluid);
+  }
+
+
+  unsigned int
+  Simulation::flow_on_new_mesh()
+  {
+    if (!solver_.has_inertia())
+      return solver_.solve_flow(state_);
+    if (n_steps_ == 0)
+      solver_.start_undisturbed(state_);
+    return 0;
   }
 
 
@@ -133,7 +153,7 @@ namespace tanktread
   {
     StepResult first;
     refine_around_shell();
-    first.linear_iterations = solver_.solve_flow(state_);
+    first.linear_iterations = flow_on_new_mesh();
 
     std::ostringstream text;
     text << "Shell: " << surface_.n_control_points() << " control points, " << surface_.n_points() << " quadrature points, " << coupling_surface_.n_points()
@@ -173,9 +193,9 @@ namespace tanktread
   {
     const Timings::Scope scope(timings_, "Output");
     Observables          o = observe(view_, fluid_, state_);
-    // Work of the shell on the disturbance flow, which that dissipates; the pressure jump works on no volume flux.
+    // Work of the shell on the disturbance flow, which that dissipates but for what inertia takes up; the pressure jump works on no volume flux.
     const ControlPoints velocity = solver_.shell_velocity(state_);
-    o.dissipation                = state_.force.cwiseProduct(velocity - flow_.velocity(state_.x)).sum();
+    o.dissipation                = state_.force.cwiseProduct(velocity - flow_.velocity(state_.x)).sum() - solver_.inertial_power(state_);
     ellipsoid_                   = o.ellipsoid;
     if (!phase_)
       phase_ = std::make_unique<PhaseAngles>(shape_.topology, state_.x, o.ellipsoid, o.theta_over_pi);
@@ -218,7 +238,7 @@ namespace tanktread
         if (!last && !fluid_.mesh().covers(coupling_.points(state_.x), coupling_.interface() == Interface::enriched ? 1. : 0.5))
           {
             refine_around_shell();
-            remeshing_iterations_ = solver_.solve_flow(state_);
+            remeshing_iterations_ = flow_on_new_mesh();
           }
       }
   }

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <stdexcept>
 
 namespace tanktread
 {
@@ -36,7 +37,8 @@ namespace tanktread
                              Coupling                 &coupling,
                              const double              volume,
                              const UndisturbedFlow     flow,
-                             Timings                  &timings)
+                             Timings                  &timings,
+                             const double              reynolds_number)
     : parameters_(parameters)
     , shell_(shell)
     , surface_(surface)
@@ -45,14 +47,17 @@ namespace tanktread
     , flow_(flow)
     , timings_(timings)
     , implicit_shell_(shell.communicator())
+    , reynolds_number_(reynolds_number)
   {}
 
 
   void
-  NewtonSolver::attach(const Fluid &fluid)
+  NewtonSolver::attach(Fluid &fluid)
   {
     fluid_ = &fluid;
     coupling_.attach(fluid.space());
+    if (reynolds_number_ > 0.)
+      inertia_ = std::make_unique<Inertia>(fluid.space(), reynolds_number_, flow_.shear_rate);
   }
 
 
@@ -69,6 +74,8 @@ namespace tanktread
 
     fluid_->space().reinit(r.fluid);
     fluid_->stokes().vmult(r.fluid, state.fluid);
+    if (inertia_ && tau > 0.)
+      inertia_->add_residual(state.fluid, r.fluid);
     const ControlPoints velocity = shell_velocity(state);
     coupling_.spread(-state.force - state.pressure_jump * v, r.fluid);
     r.shell_speed = shell_speed(r.fluid);
@@ -134,6 +141,8 @@ namespace tanktread
     if (choice.derivatives == PointDerivatives::complete)
       gradients = coupling_.velocity_gradients(state.fluid);
     gradients.col(2).array() += flow_.shear_rate; // du_x/dz
+    if (inertia_)
+      inertia_->linearise(state.fluid);
     return {shell_, surface_, coupling_, state, shell_velocity(state), gradients, choice, implicit_shell_};
   }
 
@@ -159,7 +168,7 @@ namespace tanktread
   {
     const Timings::Scope           scope(timings_, "Linear solver");
     const unsigned int             n_points = r.x.rows();
-    const MonolithicOperator       matrix(fluid_->stokes(), shell, &timings_);
+    const MonolithicOperator       matrix(fluid_->stokes(), shell, &timings_, shell.tau() > 0. ? inertia_.get() : nullptr);
     const MonolithicPreconditioner preconditioner(fluid_->preconditioner(), shell, volume_, &timings_);
 
     const ControlPoints dx0 = shell.displacement_of_residual(r.x, r.volume);
@@ -267,10 +276,17 @@ namespace tanktread
 
 
   NewtonReport
-  NewtonSolver::solve(State &state, const ControlPoints &xhat, const double tau)
+  NewtonSolver::solve(State &state, const ControlPoints &xhat, const double tau, const FluidVector *const uhat)
   {
     NewtonReport report;
     State        trial = state;
+    if (inertia_)
+      {
+        if (uhat == nullptr)
+          throw std::logic_error("NewtonSolver::solve: a step with inertia needs uhat.");
+        inertia_->begin_step(*uhat, tau);
+        fluid_->set_shift(inertia_->mass());
+      }
     try
       {
         Residual     r        = residual(trial, xhat, tau, Points::follow);
@@ -327,9 +343,27 @@ namespace tanktread
   }
 
 
+  void
+  NewtonSolver::start_undisturbed(State &state)
+  {
+    fluid_->space().reinit(state.fluid);
+    state.pressure_jump = 0.;
+    state.force         = shell_.force(state.x);
+    coupling_.move(state.x, volume_gradient(surface_, state.x));
+  }
+
+
+  double
+  NewtonSolver::inertial_power(const State &state) const
+  {
+    return inertia_ && inertia_->mass() > 0. ? inertia_->power(state.fluid) : 0.;
+  }
+
+
   unsigned int
   NewtonSolver::solve_flow(State &state)
   {
+    fluid_->set_shift(0.);
     state.force = shell_.force(state.x);
     State          increment;
     const Residual r = residual(state, state.x, 0., Points::follow);

@@ -108,7 +108,7 @@ TEST(Parameters, WrongValuesAreRefused)
   expect_error("Scene/Shear number G=0", "allowed: a number > 0");
   expect_error("Scene/Reduced bending modulus=-1", "allowed: a number >= 0");
   expect_error("Scene/Viscosity ratio=5", "not available in this version, allowed: 1");
-  expect_error("Scene/Reynolds number=0.1", "not available in this version, allowed: 0");
+  expect_error("Scene/Reynolds number=-1", "allowed: a number >= 0");
   expect_error("Scene/Flow=poiseuille", "allowed: one of shear, quiescent");
   expect_error("Scene/Flow=quiescent", "Scene/Reduced bending modulus is 0");
   expect_error("Scene/Box side=1", "allowed: a number >= 3");
@@ -117,6 +117,13 @@ TEST(Parameters, WrongValuesAreRefused)
   expect_error("Shell mesh/Quadrature=2", "allowed: one of 1, 3, 6, 7, 12");
   expect_error("Output/Checkpoint interval=1", "not available in this version, allowed: 0");
   expect_error("Output/Directory=/dev/null/output", "is not a folder");
+}
+
+TEST(Parameters, InertiaNeedsTheImplicitCoupling)
+{
+  EXPECT_NE(
+    error_of({"Scene/Reynolds number=1", "Solver/Coupling=explicit"}).find("Solver/Coupling is explicit; allowed with Scene/Reynolds number > 0: implicit"),
+    std::string::npos);
 }
 
 TEST(Parameters, ShapeFromFileNeedsAFile)

@@ -22,6 +22,10 @@ namespace tanktread
     /** `mesh` has to be on its first rung, `space` its quadratic nodes. Collective. */
     CoarseSolver(const FluidMesh &mesh, const NodeSpace &space);
 
+    /** From now on A + shift times the mass matrix is inverted. */
+    void
+    set_shift(double shift);
+
     /** u = A^{-1} f, owned entries of full arrays. Collective. */
     void
     solve(const Number *f, Number *u) const;
@@ -33,6 +37,7 @@ namespace tanktread
     MPI_Comm                  communicator_;
     std::vector<unsigned int> place_; // of the owned nodes in the lattice, x fastest
     Matrix                    periodic_modes_, wall_modes_;
+    Eigen::VectorXd           periodic_eigenvalue_, wall_eigenvalue_;
     Vector                    inverse_eigenvalue_; // of the lattice of modes
     mutable Vector            values_;
   };

@@ -38,6 +38,13 @@ namespace tanktread
       return true;
     }
 
+    /** The preconditioner is for A + shift times the velocities' mass matrix from now on, as inertia asks for. Collective. */
+    void
+    set_shift(const double shift)
+    {
+      multigrid_.set_shift(shift);
+    }
+
     const FluidMesh &
     mesh() const
     {

@@ -9,7 +9,7 @@
 
 namespace tanktread
 {
-  /** (grad u, grad v) for each velocity component on the free nodes, on full arrays (see NodeSpace). `space` is kept by reference. */
+  /** (grad u, grad v) + shift (u, v), shift = 0 at first, for each velocity component on the free nodes, on full arrays (see NodeSpace). `space` is kept by reference. */
   template <typename Number>
   class LaplaceOperator
   {
@@ -19,6 +19,13 @@ namespace tanktread
     /** y = A u for owned nodes; updates the rest of u, and what y has beyond its owned nodes is void. Collective. */
     void
     apply(Number *u, Number *y) const;
+
+    /** Inertia puts `shift` times the mass matrix to the operator. */
+    void
+    set_shift(const double shift)
+    {
+      shift_ = shift;
+    }
 
     /** Diagonal of A, one number an owned node, hanging nodes included exactly. */
     std::vector<Number>
@@ -33,6 +40,7 @@ namespace tanktread
   private:
     const NodeSpace     &space_;
     const InstructionSet instructions_;
+    double               shift_ = 0.;
   };
 } // namespace tanktread
 

@@ -37,6 +37,10 @@ namespace tanktread
     void
     climb(FluidMesh &mesh);
 
+    /** From now on v_cycle() is for A + shift times the mass matrix, also after the next climb. Costs about as much as two cycles unless that is so already. Collective. */
+    void
+    set_shift(double shift);
+
     /** Array for the right-hand side on the last rung: owned entries of a full array. */
     Number *
     right_hand_side()
@@ -85,6 +89,8 @@ namespace tanktread
 
     void
     finish_level();
+    void
+    prepare_smoother(Level &level);
     static ChebyshevArrays<Number>
     arrays(Level &level);
     void
@@ -93,6 +99,7 @@ namespace tanktread
     cycle(unsigned int l);
 
     Options                               options_;
+    double                                shift_ = 0.;
     std::vector<Level>                    levels_;
     std::unique_ptr<CoarseSolver<Number>> coarse_solver_;
   };

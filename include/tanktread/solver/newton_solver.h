@@ -11,6 +11,7 @@
 #include <tanktread/solver/solver_parameters.h>
 #include <tanktread/solver/state.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -54,18 +55,25 @@ namespace tanktread
   class NewtonSolver
   {
   public:
-    /** All arguments are kept by reference. `volume` is V0. */
+    /** All arguments but numbers are kept by reference. `volume` is V0, `reynolds_number` the density in the scene's units; 0 leaves inertia out. */
     NewtonSolver(const SolverParameters   &parameters,
                  const DistributedShell   &shell,
                  const SubdivisionSurface &surface,
                  Coupling                 &coupling,
                  double                    volume,
                  UndisturbedFlow           flow,
-                 Timings                  &timings);
+                 Timings                  &timings,
+                 double                    reynolds_number = 0.);
+
+    bool
+    has_inertia() const
+    {
+      return reynolds_number_ > 0.;
+    }
 
     /** To be called for every new fluid mesh. */
     void
-    attach(const Fluid &fluid);
+    attach(Fluid &fluid);
 
     /**
      * Advances `state`, which holds the initial guess, to the solution. If the report says that it did not converge, `state` is as it was. Collective.
@@ -76,16 +84,26 @@ namespace tanktread
      * Where the linear solver fails with the exact tangent, which may be indefinite, the positive one takes its place for the rest of the step, and until the solution of the next is near.
      *
      * Iterations whose displacement |r| tau is longer than a quarter of a cell freeze the points, the others use the complete derivative and converge quadratically.
+     *
+     * @param uhat velocities in the role of xhat, as with inertia they have a time scheme too; not read without it.
      */
     NewtonReport
-    solve(State &state, const ControlPoints &xhat, double tau);
+    solve(State &state, const ControlPoints &xhat, double tau, const FluidVector *uhat = nullptr);
 
     /**
-     * The flow at fixed shell `state.x` and forces F = f(x): u, p and pi such that no volume flows through the shell. Returns the linear iterations. Throws
+     * The Stokes flow at fixed shell `state.x` and forces F = f(x): u, p and pi such that no volume flows through the shell. Returns the linear iterations. Throws
      * NumericalError if it fails. Collective.
      */
     unsigned int
     solve_flow(State &state);
+
+    /** What a liquid with inertia starts from, which cannot jump to another flow: no disturbance, and F = f(x). Collective. */
+    void
+    start_undisturbed(State &state);
+
+    /** Power that goes into the disturbance's kinetic energy, by the last step; zero without inertia. Collective. */
+    double
+    inertial_power(const State &state) const;
 
     /** Velocity of the control points, J u + u_inf; the coupling's points must be at state.x, as they are after a solve. Collective. */
     ControlPoints
@@ -155,7 +173,9 @@ namespace tanktread
     ImplicitShell             implicit_shell_;
     Tangent                   tangent_ = Tangent::exact; // to start a step with
     KrylovBasis               krylov_basis_;
-    const Fluid              *fluid_ = nullptr;
+    Fluid                    *fluid_ = nullptr;
+    double                    reynolds_number_;
+    std::unique_ptr<Inertia>  inertia_; // none without it
   };
 } // namespace tanktread
 
