@@ -747,11 +747,49 @@ namespace tanktread
   }
 
 
+  template <typename Number>
+  void
+  add_linear_laplace(const Cubes &cubes, const Number *p, Number *y)
+  {
+    using V = Lanes<Number, 1>;
+    // Along each direction M = (1, 1)(1, 1)^T / 4 + (1, -1)(1, -1)^T / 12 and K = (1, -1)(1, -1)^T on the unit interval: sums and differences diagonalise both.
+    constexpr Number mass[2] = {Number(1. / 4), Number(1. / 12)}, eigenvalue[2] = {0, 12};
+    for (unsigned int i = 0; i < cubes.n; ++i)
+      {
+        const unsigned int *nodes = cubes.pressure_nodes + 8 * i;
+        const Number        size  = cubes.size[i];
+        V                   q[8];
+        for (int j = 0; j < 8; ++j)
+          q[j] = load_node(p + 4 * nodes[j]);
+        for (const bool back : {false, true})
+          {
+            for (int step = 1; step < 8; step *= 2)
+              for (int j = 0; j < 8; ++j)
+                if ((j & step) == 0)
+                  {
+                    const V sum = q[j] + q[j + step];
+                    q[j + step] = q[j] - q[j + step];
+                    q[j]        = sum;
+                  }
+            if (!back)
+              for (int j = 0; j < 8; ++j)
+                {
+                  const int x = j % 2, y_mode = j / 2 % 2, z = j / 4;
+                  q[j] *= size * (mass[x] * mass[y_mode] * mass[z] * (eigenvalue[x] + eigenvalue[y_mode] + eigenvalue[z]));
+                }
+          }
+        for (int j = 0; j < 8; ++j)
+          add_to_node<Number>(y + 4 * nodes[j], q[j]);
+      }
+  }
+
+
 #define TANKTREAD_INSTANTIATE(Number)                                                                                                                         \
   template void add_laplace(InstructionSet, const Cubes &, const Number *, Number *);                                                                         \
   template void add_helmholtz(InstructionSet, const Cubes &, Number, const Number *, Number *);                                                               \
   template void add_inertia(InstructionSet, const Cubes &, const double *, InertiaCoefficients<Number>, const Number *, Number *);                            \
   template void add_inertia_derivative(InstructionSet, const Cubes &, const double *, InertiaCoefficients<Number>, const Number *, const Number *, Number *); \
+  template void add_linear_laplace(const Cubes &, const Number *, Number *);                                                                                  \
   template void add_stokes(InstructionSet, const Cubes &, const Number *, const Number *, Number *, Number *);                                                \
   template void add_pressure_gradient(InstructionSet, const Cubes &, const Number *, Number *);                                                               \
   template void add_viscous(InstructionSet, const Cubes &, const Number *, const Number *, Number *);                                                         \

@@ -11,6 +11,25 @@ namespace tanktread
 {
   namespace
   {
+    /** Of the linear functions. */
+    std::vector<double>
+    linear_unit_cube_matrix()
+    {
+      const double                      size  = 1.;
+      const std::array<unsigned int, 8> nodes = {{0, 1, 2, 3, 4, 5, 6, 7}};
+      std::vector<double>               result(64);
+      for (unsigned int b = 0; b < 8; ++b)
+        {
+          std::array<double, 32> p = {}, y = {};
+          p[4 * b] = 1.;
+          add_linear_laplace(Cubes{1, &size, nullptr, nodes.data()}, p.data(), y.data());
+          for (unsigned int a = 0; a < 8; ++a)
+            result[8 * a + b] = y[4 * a];
+        }
+      return result;
+    }
+
+
     /** Row by row: Laplace and mass matrix with these factors. */
     std::vector<double>
     unit_cube_matrix(const double laplace, const double mass)
@@ -47,8 +66,11 @@ namespace tanktread
   {
     space_.update(u);
     std::fill(y, y + space_.full_size(), Number(0));
-    const Cubes cells{space_.n_cells(), space_.cell_sizes().data(), space_.cell_nodes(0), nullptr};
-    if (shift_ == 0.)
+    const bool  linear = space_.nodes_per_cell() == 8;
+    const Cubes cells{space_.n_cells(), space_.cell_sizes().data(), space_.cell_nodes(0), linear ? space_.cell_nodes(0) : nullptr};
+    if (linear)
+      add_linear_laplace(cells, u, y);
+    else if (shift_ == 0.)
       add_laplace(instructions_, cells, u, y);
     else
       add_helmholtz(instructions_, cells, Number(shift_), u, y);
@@ -60,7 +82,7 @@ namespace tanktread
   std::vector<Number>
   LaplaceOperator<Number>::diagonal() const
   {
-    std::vector<double> result = space_.diagonal(unit_cube_matrix(1., 0.), 1);
+    std::vector<double> result = space_.diagonal(space_.nodes_per_cell() == 8 ? linear_unit_cube_matrix() : unit_cube_matrix(1., 0.), 1);
     if (shift_ != 0.)
       {
         const std::vector<double> mass = space_.diagonal(unit_cube_matrix(0., shift_), 3);

@@ -18,12 +18,20 @@ namespace tanktread
 
 
   template <typename Number>
+  std::shared_ptr<const NodeSpace>
+  Multigrid<Number>::nodes(const FluidMesh &mesh) const
+  {
+    return std::make_shared<NodeSpace>(ScalarSpace(mesh, options_.elements, options_.elements == 2), 3);
+  }
+
+
+  template <typename Number>
   void
   Multigrid<Number>::start(const FluidMesh &mesh)
   {
     levels_.clear();
     levels_.emplace_back();
-    levels_.back().space = std::make_shared<NodeSpace>(ScalarSpace(mesh, 2, true), 3);
+    levels_.back().space = nodes(mesh);
     coarse_solver_       = std::make_unique<CoarseSolver<Number>>(mesh, *levels_.back().space);
     finish_level();
   }
@@ -37,7 +45,7 @@ namespace tanktread
     levels_.emplace_back();
     Level                  &level = levels_.back();
     const InterpolationRows rows  = climb_with_interpolation(mesh, *coarse, [&]() -> const NodeSpace  &{
-      level.space = std::make_shared<NodeSpace>(ScalarSpace(mesh, 2, true), 3);
+      level.space = nodes(mesh);
       return *level.space;
     });
     level.transfer                = std::make_unique<LevelTransfer<Number>>(rows, *coarse, *level.space);

@@ -23,9 +23,10 @@ namespace tanktread
   } // namespace
 
 
-  StokesPreconditioner::StokesPreconditioner(const TaylorHoodSpace &space, Multigrid<float> &multigrid)
+  StokesPreconditioner::StokesPreconditioner(const TaylorHoodSpace &space, Multigrid<float> &multigrid, Multigrid<float> *const pressure_multigrid)
     : space_(space)
     , multigrid_(multigrid)
+    , pressure_multigrid_(pressure_multigrid)
     , instructions_(best_instruction_set())
     , load_(space.velocity->full_size())
   {
@@ -38,6 +39,31 @@ namespace tanktread
     const auto   apply   = [&](float *x, float *y) { apply_pressure_mass(x, y); };
     const double largest = largest_eigenvalue<1>(apply, p, arrays());
     range_               = {5, largest / 20., 1.05 * largest};
+  }
+
+
+  void
+  StokesPreconditioner::set_shift(const double shift)
+  {
+    shift_ = shift;
+    multigrid_.set_shift(shift);
+  }
+
+
+  void
+  StokesPreconditioner::add_inertial_pressure() const
+  {
+    const unsigned int n = space_.pressure->n_owned();
+    float *const       b = pressure_multigrid_->right_hand_side();
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        b[4 * i]     = r_p_[i];
+        b[4 * i + 1] = b[4 * i + 2] = b[4 * i + 3] = 0.f;
+      }
+    pressure_multigrid_->v_cycle();
+    const float *const solution = pressure_multigrid_->solution();
+    for (unsigned int i = 0; i < n; ++i)
+      p_[i] += float(shift_) * solution[4 * i];
   }
 
 
@@ -66,6 +92,8 @@ namespace tanktread
     for (float &r : r_p_)
       r = -r;
     chebyshev<1>([&](float *x, float *y) { apply_pressure_mass(x, y); }, range_, arrays(), true);
+    if (shift_ > 0. && pressure_multigrid_ != nullptr)
+      add_inertial_pressure();
     p.store(p_.data(), dst.block(pressure_block), false);
 
     p.update(p_.data());

@@ -81,7 +81,7 @@ namespace tanktread
     , surface_(shape_.topology, triangle_quadrature(parameters.shell_mesh.quadrature), derivatives_needed(parameters))
     , shell_(surface_, parameters.shell, {parameters.scene.surface_young_modulus(), parameters.scene.bending_modulus()}, shape_.control_points)
     , distributed_shell_(shell_, shape_.topology, communicator)
-    , fluid_(communicator, parameters.scene.box_side, parameters.fluid_mesh)
+    , fluid_(communicator, parameters.scene.box_side, parameters.fluid_mesh, parameters.scene.reynolds_number > 0.)
     , coupling_surface_(make_coupling_surface(shape_, parameters.solver.interface, fluid_.mesh()))
     , coupling_(coupling_surface_, area_weights(coupling_surface_, shape_.control_points), parameters.solver.interface)
     , view_{shape_.topology, surface_, shell_, enclosed_volume(surface_, shape_.control_points)}

@@ -14,12 +14,14 @@ namespace tanktread
   /**
    * Inverts the velocities' Laplace matrix on a uniform mesh, periodic in x and y, zero at the walls. There it is K x M x M + M x K x M + M x M x K with one-dimensional matrices K
    * and M of the whole box, which the eigenvectors of K v = lambda M v diagonalise together. Every rank solves the whole (small) problem.
+   *
+   * For linear functions there is no condition at the walls, and the constant, which is in the kernel then, is left out of the solution.
    */
   template <typename Number>
   class CoarseSolver
   {
   public:
-    /** `mesh` has to be on its first rung, `space` its quadratic nodes. Collective. */
+    /** `mesh` has to be on its first rung, `space` its quadratic or linear nodes. Collective. */
     CoarseSolver(const FluidMesh &mesh, const NodeSpace &space);
 
     /** From now on A + shift times the mass matrix is inverted. */

@@ -44,6 +44,11 @@ namespace tanktread
   void
   add_helmholtz(InstructionSet set, const Cubes &cubes, Number shift, const Number *u, Number *y);
 
+  /** y += Laplace matrix of the linear functions times p, at the pressure nodes, for each of four numbers a node. */
+  template <typename Number>
+  void
+  add_linear_laplace(const Cubes &cubes, const Number *p, Number *y);
+
   /** (y_u, y_p) += [A, -B^T; -B, 0] (u, p), with A as in add_laplace and B_j,cb = integral of psi_j d phi_b/dx_c. */
   template <typename Number>
   void

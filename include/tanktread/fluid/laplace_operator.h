@@ -9,7 +9,10 @@
 
 namespace tanktread
 {
-  /** (grad u, grad v) + shift (u, v), shift = 0 at first, for each velocity component on the free nodes, on full arrays (see NodeSpace). `space` is kept by reference. */
+  /**
+   * (grad u, grad v) + shift (u, v), shift = 0 at first, for each velocity component on the free nodes, on full arrays (see NodeSpace). `space` is kept by reference. Its nodes may be
+   * those of linear functions too, then the shift has to stay zero.
+   */
   template <typename Number>
   class LaplaceOperator
   {

@@ -25,6 +25,8 @@ namespace tanktread
     {
       unsigned int degree = 2;  // of the polynomial, before and after the coarse correction
       double       range  = 5.; // it reduces errors with eigenvalues between largest / range and largest
+      unsigned int elements =
+        2; // their degree: 2 for velocities, 1 for scalars like the pressure, in the first of three components, without a condition at the walls
     };
 
     explicit Multigrid(const Options &options = {});
@@ -87,6 +89,8 @@ namespace tanktread
       dealii::AlignedVector<Number>            x, b, residual, direction; // full arrays
     };
 
+    std::shared_ptr<const NodeSpace>
+    nodes(const FluidMesh &mesh) const;
     void
     finish_level();
     void
