@@ -4,6 +4,7 @@
 #include <tanktread/fluid/stokes_preconditioner.h>
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace tanktread
 {
@@ -45,6 +46,8 @@ namespace tanktread
   void
   StokesPreconditioner::set_shift(const double shift)
   {
+    if (shift != 0. && pressure_multigrid_ == nullptr)
+      throw std::logic_error("StokesPreconditioner::set_shift: made without a multigrid for the pressure.");
     shift_ = shift;
     multigrid_.set_shift(shift);
   }
@@ -92,7 +95,7 @@ namespace tanktread
     for (float &r : r_p_)
       r = -r;
     chebyshev<1>([&](float *x, float *y) { apply_pressure_mass(x, y); }, range_, arrays(), true);
-    if (shift_ > 0. && pressure_multigrid_ != nullptr)
+    if (shift_ != 0.)
       add_inertial_pressure();
     p.store(p_.data(), dst.block(pressure_block), false);
 

@@ -23,7 +23,7 @@ namespace tanktread
     /** Keeps both by reference, and the pointer; the multigrids have climbed to the mesh of `space`. Collective. @param pressure_multigrid of linear elements, needed with inertia only. */
     StokesPreconditioner(const TaylorHoodSpace &space, Multigrid<float> &multigrid, Multigrid<float> *pressure_multigrid = nullptr);
 
-    /** From now on for A + shift times the velocities' mass matrix. Collective. */
+    /** From now on for A + shift times the velocities' mass matrix. Throws std::logic_error if there is no multigrid for the pressure that a shift needs. Collective. */
     void
     set_shift(double shift);
 
