@@ -43,7 +43,9 @@ namespace tanktread
           "mu gamma a / G_s = 3 G\n";
       else
         text += "time in mu a^3 / kappa_B.\n";
-      return text + "  khat = " + number("%-10.6g", run.khat) + "kappa_B / (a^2 E h)\n  box  = " + number("%-10.6g", run.box_side) + "side, in a\n";
+      return text + "  khat = " + number("%-10.6g", run.khat) + "kappa_B / (a^2 E h)\n  box  = " + number("%-10.6g", run.box_side) + "side, in a\n" +
+        (run.Re > 0. ? "  Re   = " + number("%-10.6g", run.Re) + (run.shear ? "rho gamma a^2 / mu: with inertia\n" : "rho kappa_B / (mu^2 a): with inertia\n")
+                     : "");
     }
 
     const char *const step_format = "%6s %10s %9s %6s %6s %9s %9s %10s %10s";

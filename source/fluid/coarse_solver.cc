@@ -16,23 +16,32 @@ namespace tanktread
       Eigen::MatrixXd vectors; // V^T M V = 1
     };
 
-    /** One-dimensional quadratic elements, n of size h, periodic or zero at both ends (which then have no rows). */
+    /** One-dimensional elements of degree 2 or 1, n of size h, periodic or, of degree 2, zero at both ends (which then have no rows). */
     Modes
-    modes(const int n, const double h, const bool periodic)
+    modes(const int n, const double h, const bool periodic, const int degree)
     {
       Eigen::Matrix3d mass, stiffness;
-      mass << 4, 2, -1, 2, 16, 2, -1, 2, 4;
-      stiffness << 7, -8, 1, -8, 16, -8, 1, -8, 7;
-      Eigen::MatrixXd M = Eigen::MatrixXd::Zero(2 * n + 1, 2 * n + 1), K = M;
-      const auto      place = [&](const int i) { return periodic ? i % (2 * n) : i; };
+      if (degree == 2)
+        {
+          mass << 4, 2, -1, 2, 16, 2, -1, 2, 4;
+          stiffness << 7, -8, 1, -8, 16, -8, 1, -8, 7;
+        }
+      else
+        {
+          mass << 10, 5, 0, 5, 10, 0, 0, 0, 0;
+          stiffness << 3, -3, 0, -3, 3, 0, 0, 0, 0;
+        }
+      Eigen::MatrixXd M = Eigen::MatrixXd::Zero(degree * n + 1, degree * n + 1), K = M;
+      const auto      place = [&](const int i) { return periodic ? i % (degree * n) : i; };
       for (int cell = 0; cell < n; ++cell)
-        for (int a = 0; a < 3; ++a)
-          for (int b = 0; b < 3; ++b)
+        for (int a = 0; a <= degree; ++a)
+          for (int b = 0; b <= degree; ++b)
             {
-              M(place(2 * cell + a), place(2 * cell + b)) += h / 30. * mass(a, b);
-              K(place(2 * cell + a), place(2 * cell + b)) += stiffness(a, b) / (3. * h);
+              M(place(degree * cell + a), place(degree * cell + b)) += h / 30. * mass(a, b);
+              K(place(degree * cell + a), place(degree * cell + b)) += stiffness(a, b) / (3. * h);
             }
-      const int                                                       first = periodic ? 0 : 1, size = periodic ? 2 * n : 2 * n - 1;
+      const bool                                                      zero_at_ends = !periodic && degree == 2;
+      const int                                                       first = zero_at_ends ? 1 : 0, size = periodic ? degree * n : degree * n + 1 - 2 * first;
       const Eigen::MatrixXd                                           M_free = M.block(first, first, size, size), K_free = K.block(first, first, size, size);
       const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(K_free, M_free);
       return {solver.eigenvalues(), solver.eigenvectors()};
@@ -45,15 +54,14 @@ namespace tanktread
     : communicator_(mesh.communicator())
     , place_(space.n_owned())
   {
-    const int   n = mesh.n_rung_0(), n_x = 2 * n, n_z = 2 * n - 1;
-    const Modes periodic = modes(n, mesh.cell_size(0), true), wall = modes(n, mesh.cell_size(0), false);
-    periodic_modes_ = periodic.vectors.cast<Number>();
-    wall_modes_     = wall.vectors.cast<Number>();
+    const int   degree = space.nodes_per_cell() == 8 ? 1 : 2, n = mesh.n_rung_0(), n_x = degree * n, n_z = degree == 1 ? n + 1 : 2 * n - 1;
+    const Modes periodic = modes(n, mesh.cell_size(0), true, degree), wall = modes(n, mesh.cell_size(0), false, degree);
+    periodic_modes_      = periodic.vectors.cast<Number>();
+    wall_modes_          = wall.vectors.cast<Number>();
+    periodic_eigenvalue_ = periodic.values;
+    wall_eigenvalue_     = wall.values;
     inverse_eigenvalue_.resize(n_x * n_x * n_z);
-    for (int k = 0; k < n_z; ++k)
-      for (int j = 0; j < n_x; ++j)
-        for (int i = 0; i < n_x; ++i)
-          inverse_eigenvalue_[i + n_x * (j + n_x * k)] = 1. / (periodic.values[i] + periodic.values[j] + wall.values[k]);
+    set_shift(0.);
     values_.resize(3 * inverse_eigenvalue_.size());
 
     unsigned int cell_number = 0;
@@ -62,10 +70,27 @@ namespace tanktread
         {
           const auto          position = mesh.key(cell).position;
           const unsigned int *nodes    = space.cell_nodes(cell_number++);
-          for (int a = 0; a < 27; ++a)
+          const int           line = degree + 1, below = degree == 2 ? 1 : 0; // nodes at the lower wall, which have no place
+          for (int a = 0; a < line * line * line; ++a)
             if (nodes[a] < space.n_owned())
-              place_[nodes[a]] = (2 * position[0] + a % 3) % n_x + n_x * ((2 * position[1] + a / 3 % 3) % n_x + n_x * (2 * position[2] + a / 9 - 1));
+              place_[nodes[a]] = (degree * position[0] + a % line) % n_x +
+                n_x * ((degree * position[1] + a / line % line) % n_x + n_x * (degree * position[2] + a / (line * line) - below));
         }
+  }
+
+
+  template <typename Number>
+  void
+  CoarseSolver<Number>::set_shift(const double shift)
+  {
+    const Eigen::Index n_x = periodic_eigenvalue_.size(), n_z = wall_eigenvalue_.size();
+    for (Eigen::Index k = 0; k < n_z; ++k)
+      for (Eigen::Index j = 0; j < n_x; ++j)
+        for (Eigen::Index i = 0; i < n_x; ++i)
+          {
+            const double eigenvalue                      = periodic_eigenvalue_[i] + periodic_eigenvalue_[j] + wall_eigenvalue_[k] + shift;
+            inverse_eigenvalue_[i + n_x * (j + n_x * k)] = eigenvalue > 1e-10 * wall_eigenvalue_[n_z - 1] ? 1. / eigenvalue : 0.;
+          }
   }
 
 

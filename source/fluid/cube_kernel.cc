@@ -131,9 +131,10 @@ namespace tanktread
     }
 
 
-    template <typename Number, typename V>
+    /** By the Laplace matrix of a cube and, if `with_mass`, `mass_factor` / size^3 times its mass matrix. */
+    template <typename Number, bool with_mass = false, typename V>
     TANKTREAD_INLINE void
-    multiply_by_laplace(V *u, const V size)
+    multiply_by_laplace(V *u, const V size, const V mass_factor = V{})
     {
       for (int k = 0; k < 9; ++k)
         to_modes(u[3 * k], u[3 * k + 1], u[3 * k + 2]);
@@ -147,7 +148,10 @@ namespace tanktread
       for (int k = 0; k < 3; ++k)
         for (int j = 0; j < 3; ++j)
           for (int i = 0; i < 3; ++i)
-            u[i + 3 * j + 9 * k] *= size * (mass[i] * mass[j] * mass[k] * (eigenvalue[i] + eigenvalue[j] + eigenvalue[k]));
+            if constexpr (with_mass)
+              u[i + 3 * j + 9 * k] *= (size * (eigenvalue[i] + eigenvalue[j] + eigenvalue[k]) + mass_factor) * (mass[i] * mass[j] * mass[k]);
+            else
+              u[i + 3 * j + 9 * k] *= size * (mass[i] * mass[j] * mass[k] * (eigenvalue[i] + eigenvalue[j] + eigenvalue[k]));
       for (int i = 0; i < 9; ++i)
         from_modes(u[i], u[i + 9], u[i + 18]);
       for (int k = 0; k < 3; ++k)
@@ -279,6 +283,28 @@ namespace tanktread
         for (int a = 0; a < 27; ++a)
           v[a] = gather<Number, n_cubes>(u, nodes + a);
         multiply_by_laplace<Number>(v, sizes<Number, n_cubes>(size, 1));
+        for (int a = 0; a < 27; ++a)
+          scatter<Number, n_cubes>(y, nodes + a, v[a]);
+      }
+    };
+
+
+    template <typename Number, int n_cubes>
+    struct Helmholtz
+    {
+      const double *mass;
+      const Number *u;
+      Number       *y;
+
+      TANKTREAD_INLINE void
+      operator()(const double *size, const unsigned int *nodes, const unsigned int *, const unsigned int cube) const
+      {
+        using V   = Lanes<Number, n_cubes>;
+        const V h = sizes<Number, n_cubes>(size, 1);
+        V       v[27];
+        for (int a = 0; a < 27; ++a)
+          v[a] = gather<Number, n_cubes>(u, nodes + a);
+        multiply_by_laplace<Number, true>(v, h, sizes<Number, n_cubes>(mass + cube, 1));
         for (int a = 0; a < 27; ++a)
           scatter<Number, n_cubes>(y, nodes + a, v[a]);
       }
@@ -585,6 +611,123 @@ namespace tanktread
     };
 
 
+    // ---- Inertia ----
+
+    template <typename Number>
+    struct GaussRule
+    {
+      Number point[3], weight[3];
+    };
+    template <typename Number>
+    TANKTREAD_INLINE constexpr GaussRule<Number>
+    gauss_rule()
+    {
+      const double root = 0.774596669241483377; // sqrt(3/5)
+      return {{Number(0.5 - 0.5 * root), Number(0.5), Number(0.5 + 0.5 * root)}, {Number(5. / 18), Number(8. / 18), Number(5. / 18)}};
+    }
+
+
+    /** Component d of each cube in all four of its lanes. */
+    template <typename Number, int n_cubes, int d>
+    TANKTREAD_INLINE Lanes<Number, n_cubes>
+                     component(const Lanes<Number, n_cubes> v)
+    {
+      typename Register<Number, 4 * n_cubes>::index index{};
+      for (int lane = 0; lane < 4 * n_cubes; ++lane)
+        index[lane] = lane / 4 * 4 + d;
+      return __builtin_shuffle(v, index);
+    }
+
+
+    /** A field and its derivatives by the positions in the unit cube, at the Gauss points. */
+    template <typename Number, int n_cubes>
+    struct PointValues
+    {
+      Lanes<Number, n_cubes> value[27], x[27], y[27], z[27];
+
+      TANKTREAD_INLINE
+      PointValues(const Number *u, const unsigned int *nodes)
+      {
+        constexpr GaussMatrices<Number> matrix = gauss_matrices<Number>();
+        Lanes<Number, n_cubes>          v[27], a[27], b[27];
+        for (int i = 0; i < 27; ++i)
+          v[i] = gather<Number, n_cubes>(u, nodes + i);
+        along<Number, 1, false, false>(matrix.derivative, v, a);
+        along<Number, 3, false, false>(matrix.value, a, b);
+        along<Number, 9, false, false>(matrix.value, b, x);
+        along<Number, 1, false, false>(matrix.value, v, a);
+        along<Number, 3, false, false>(matrix.derivative, a, b);
+        along<Number, 9, false, false>(matrix.value, b, y);
+        along<Number, 3, false, false>(matrix.value, a, b);
+        along<Number, 9, false, false>(matrix.derivative, b, z);
+        along<Number, 9, false, false>(matrix.value, b, value);
+      }
+
+      /** v . grad of this field at a point. */
+      TANKTREAD_INLINE Lanes<Number, n_cubes>
+                       along_flow(const int q, const Lanes<Number, n_cubes> v) const
+      {
+        return component<Number, n_cubes, 0>(v) * x[q] + component<Number, n_cubes, 1>(v) * y[q] + component<Number, n_cubes, 2>(v) * z[q];
+      }
+    };
+
+
+    template <typename Number, int n_cubes, bool derivative>
+    struct Inertia
+    {
+      const double               *lower_z;
+      InertiaCoefficients<Number> factor;
+      const Number               *u, *du;
+      Number                     *y;
+
+      TANKTREAD_INLINE void
+      operator()(const double *size, const unsigned int *nodes, const unsigned int *, const unsigned int first_cube) const
+      {
+        using V                                = Lanes<Number, n_cubes>;
+        constexpr GaussMatrices<Number> matrix = gauss_matrices<Number>();
+        constexpr GaussRule<Number>     rule   = gauss_rule<Number>();
+        const V                         h = sizes<Number, n_cubes>(size, 1), x_axis = by_component<Number, n_cubes>(0, 1, 0);
+        Number                          z_0[n_cubes];
+        for (int cube = 0; cube < n_cubes; ++cube)
+          z_0[cube] = lower_z[first_cube + cube];
+        const V lower_wind = factor.shear_rate * x_axis * in_components<Number, n_cubes>(z_0), wind_across = factor.shear_rate * x_axis * h;
+
+        const PointValues<Number, n_cubes> flow(u, nodes);
+        V                                  result[27], a[27];
+        if constexpr (derivative)
+          {
+            const PointValues<Number, n_cubes> change(du, nodes);
+            for (int q = 0; q < 27; ++q)
+              {
+                const V wind = flow.value[q] + lower_wind + rule.point[q / 9] * wind_across;
+                const V convection =
+                  change.along_flow(q, wind) + flow.along_flow(q, change.value[q]) + wind_across * component<Number, n_cubes, 2>(change.value[q]);
+                result[q] = h * h * (factor.mass * h * change.value[q] + factor.convection * convection);
+              }
+          }
+        else
+          for (int q = 0; q < 27; ++q)
+            {
+              const V wind       = flow.value[q] + lower_wind + rule.point[q / 9] * wind_across;
+              const V convection = flow.along_flow(q, wind) + wind_across * component<Number, n_cubes, 2>(flow.value[q]);
+              result[q]          = h * h * (factor.mass * h * flow.value[q] + factor.convection * convection);
+            }
+        for (int q = 0; q < 27; ++q)
+          result[q] *= rule.weight[q % 3] * rule.weight[q / 3 % 3] * rule.weight[q / 9];
+
+        along<Number, 9, true, false>(matrix.value, result, a);
+        along<Number, 3, true, false>(matrix.value, a, result);
+        along<Number, 1, true, false>(matrix.value, result, a);
+        for (int i = 0; i < 27; ++i)
+          scatter<Number, n_cubes>(y, nodes + i, a[i]);
+      }
+    };
+    template <typename Number, int n_cubes>
+    using InertiaValue = Inertia<Number, n_cubes, false>;
+    template <typename Number, int n_cubes>
+    using InertiaDerivative = Inertia<Number, n_cubes, true>;
+
+
     /** Runs `body` over the cubes, n_cubes at a time, and the rest one by one. */
     template <template <typename, int> class Body, typename Number, int n_cubes, typename... Arrays>
     TANKTREAD_INLINE void
@@ -662,6 +805,14 @@ namespace tanktread
 
   template <typename Number>
   void
+  add_helmholtz(const InstructionSet set, const Cubes &cubes, const double *mass, const Number *u, Number *y)
+  {
+    run<Helmholtz, Number>(set, cubes, mass, u, y);
+  }
+
+
+  template <typename Number>
+  void
   add_stokes(const InstructionSet set, const Cubes &cubes, const Number *u, const Number *p, Number *y_u, Number *y_p)
   {
     run<Stokes, Number>(set, cubes, u, p, y_u, y_p);
@@ -701,9 +852,31 @@ namespace tanktread
 
   template <typename Number>
   void
+  add_inertia(const InstructionSet set, const Cubes &cubes, const double *lower_z, const InertiaCoefficients<Number> factor, const Number *u, Number *y)
+  {
+    run<InertiaValue, Number>(set, cubes, lower_z, factor, u, static_cast<const Number *>(nullptr), y);
+  }
+
+
+  template <typename Number>
+  void
   add_weighted_viscous(const InstructionSet set, const Cubes &cubes, const Number *weights, const Number *u, Number *y)
   {
     run<WeightedViscous, Number>(set, cubes, weights, u, y);
+  }
+
+
+  template <typename Number>
+  void
+  add_inertia_derivative(const InstructionSet              set,
+                         const Cubes                      &cubes,
+                         const double                     *lower_z,
+                         const InertiaCoefficients<Number> factor,
+                         const Number                     *u,
+                         const Number                     *du,
+                         Number                           *y)
+  {
+    run<InertiaDerivative, Number>(set, cubes, lower_z, factor, u, du, y);
   }
 
 
@@ -733,13 +906,54 @@ namespace tanktread
   }
 
 
-#define TANKTREAD_INSTANTIATE(Number)                                                                                                          \
-  template void add_laplace(InstructionSet, const Cubes &, const Number *, Number *);                                                          \
-  template void add_stokes(InstructionSet, const Cubes &, const Number *, const Number *, Number *, Number *);                                 \
-  template void add_pressure_gradient(InstructionSet, const Cubes &, const Number *, Number *);                                                \
-  template void add_viscous(InstructionSet, const Cubes &, const Number *, const Number *, Number *);                                          \
-  template void add_weighted_viscous(InstructionSet, const Cubes &, const Number *, const Number *, Number *);                                 \
-  template void add_viscous_stokes(InstructionSet, const Cubes &, const Number *, Number, const Number *, const Number *, Number *, Number *); \
+  template <typename Number>
+  void
+  add_linear_laplace(const Cubes &cubes, const Number *p, Number *y)
+  {
+    using V = Lanes<Number, 1>;
+    // Along each direction M = (1, 1)(1, 1)^T / 4 + (1, -1)(1, -1)^T / 12 and K = (1, -1)(1, -1)^T on the unit interval: sums and differences diagonalise both.
+    constexpr Number mass[2] = {Number(1. / 4), Number(1. / 12)}, eigenvalue[2] = {0, 12};
+    for (unsigned int i = 0; i < cubes.n; ++i)
+      {
+        const unsigned int *nodes = cubes.pressure_nodes + 8 * i;
+        const Number        size  = cubes.size[i];
+        V                   q[8];
+        for (int j = 0; j < 8; ++j)
+          q[j] = load_node(p + 4 * nodes[j]);
+        for (const bool back : {false, true})
+          {
+            for (int step = 1; step < 8; step *= 2)
+              for (int j = 0; j < 8; ++j)
+                if ((j & step) == 0)
+                  {
+                    const V sum = q[j] + q[j + step];
+                    q[j + step] = q[j] - q[j + step];
+                    q[j]        = sum;
+                  }
+            if (!back)
+              for (int j = 0; j < 8; ++j)
+                {
+                  const int x = j % 2, y_mode = j / 2 % 2, z = j / 4;
+                  q[j] *= size * (mass[x] * mass[y_mode] * mass[z] * (eigenvalue[x] + eigenvalue[y_mode] + eigenvalue[z]));
+                }
+          }
+        for (int j = 0; j < 8; ++j)
+          add_to_node<Number>(y + 4 * nodes[j], q[j]);
+      }
+  }
+
+
+#define TANKTREAD_INSTANTIATE(Number)                                                                                                                         \
+  template void add_laplace(InstructionSet, const Cubes &, const Number *, Number *);                                                                         \
+  template void add_helmholtz(InstructionSet, const Cubes &, const double *, const Number *, Number *);                                                       \
+  template void add_inertia(InstructionSet, const Cubes &, const double *, InertiaCoefficients<Number>, const Number *, Number *);                            \
+  template void add_inertia_derivative(InstructionSet, const Cubes &, const double *, InertiaCoefficients<Number>, const Number *, const Number *, Number *); \
+  template void add_linear_laplace(const Cubes &, const Number *, Number *);                                                                                  \
+  template void add_stokes(InstructionSet, const Cubes &, const Number *, const Number *, Number *, Number *);                                                \
+  template void add_pressure_gradient(InstructionSet, const Cubes &, const Number *, Number *);                                                               \
+  template void add_viscous(InstructionSet, const Cubes &, const Number *, const Number *, Number *);                                                         \
+  template void add_weighted_viscous(InstructionSet, const Cubes &, const Number *, const Number *, Number *);                                                \
+  template void add_viscous_stokes(InstructionSet, const Cubes &, const Number *, Number, const Number *, const Number *, Number *, Number *);                \
   template void add_pressure_mass(const Cubes &, const Number *, Number *);
   TANKTREAD_INSTANTIATE(float)
   TANKTREAD_INSTANTIATE(double)

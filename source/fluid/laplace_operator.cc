@@ -11,8 +11,28 @@ namespace tanktread
 {
   namespace
   {
+    /** Of the linear functions. */
     std::vector<double>
-    unit_cube_matrix()
+    linear_unit_cube_matrix()
+    {
+      const double                      size  = 1.;
+      const std::array<unsigned int, 8> nodes = {{0, 1, 2, 3, 4, 5, 6, 7}};
+      std::vector<double>               result(64);
+      for (unsigned int b = 0; b < 8; ++b)
+        {
+          std::array<double, 32> p = {}, y = {};
+          p[4 * b] = 1.;
+          add_linear_laplace(Cubes{1, &size, nullptr, nodes.data()}, p.data(), y.data());
+          for (unsigned int a = 0; a < 8; ++a)
+            result[8 * a + b] = y[4 * a];
+        }
+      return result;
+    }
+
+
+    /** Row by row: Laplace and mass matrix with these factors. */
+    std::vector<double>
+    unit_cube_matrix(const double laplace, const double mass)
     {
       const double                 size = 1.;
       std::array<unsigned int, 27> nodes;
@@ -21,11 +41,12 @@ namespace tanktread
       std::vector<double> result(27 * 27);
       for (unsigned int b = 0; b < 27; ++b)
         {
-          std::array<double, 108> u = {}, y = {};
+          std::array<double, 108> u = {}, Ku = {}, sum = {};
           u[4 * b] = 1.;
-          add_laplace(InstructionSet::baseline, cube, u.data(), y.data());
+          add_laplace(InstructionSet::baseline, cube, u.data(), Ku.data());
+          add_helmholtz(InstructionSet::baseline, cube, &size, u.data(), sum.data());
           for (unsigned int a = 0; a < 27; ++a)
-            result[27 * a + b] = y[4 * a];
+            result[27 * a + b] = laplace * Ku[4 * a] + mass * (sum[4 * a] - Ku[4 * a]);
         }
       return result;
     }
@@ -51,11 +72,29 @@ namespace tanktread
 
   template <typename Number>
   void
+  LaplaceOperator<Number>::set_shift(const double shift)
+  {
+    masses_.clear();
+    if (shift != 0.)
+      for (const double h : space_.cell_sizes())
+        masses_.push_back(shift * h * h * h);
+  }
+
+
+  template <typename Number>
+  void
   LaplaceOperator<Number>::apply(Number *const u, Number *const y) const
   {
     space_.update(u);
     std::fill(y, y + space_.full_size(), Number(0));
-    add_laplace(instructions_, {space_.n_cells(), factors().data(), space_.cell_nodes(0), nullptr}, u, y);
+    const bool  linear = space_.nodes_per_cell() == 8;
+    const Cubes cells{space_.n_cells(), factors().data(), space_.cell_nodes(0), linear ? space_.cell_nodes(0) : nullptr};
+    if (linear)
+      add_linear_laplace(cells, u, y);
+    else if (masses_.empty())
+      add_laplace(instructions_, cells, u, y);
+    else
+      add_helmholtz(instructions_, cells, masses_.data(), u, y);
     space_.collect(y);
   }
 
@@ -64,7 +103,13 @@ namespace tanktread
   std::vector<Number>
   LaplaceOperator<Number>::diagonal() const
   {
-    const std::vector<double> result = space_.diagonal(unit_cube_matrix(), factors());
+    std::vector<double> result = space_.diagonal(space_.nodes_per_cell() == 8 ? linear_unit_cube_matrix() : unit_cube_matrix(1., 0.), factors());
+    if (!masses_.empty())
+      {
+        const std::vector<double> mass = space_.diagonal(unit_cube_matrix(0., 1.), masses_);
+        for (std::size_t i = 0; i < result.size(); ++i)
+          result[i] += mass[i];
+      }
     return {result.begin(), result.end()};
   }
 

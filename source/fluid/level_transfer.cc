@@ -25,10 +25,8 @@ namespace tanktread
     };
     using Row = std::vector<Entry>;
 
-    constexpr std::size_t header = sizeof(Index) + 27; // bytes of a packed cell before its entries
-
-    /** What the 27 nodes of a coarse cell follow from. */
-    using CellRows = std::array<Row, 27>;
+    /** What the nodes of a coarse cell follow from: 27, or 8 of linear functions. */
+    using CellRows = std::vector<Row>;
 
 
     /** Number of the cell, lengths of its rows, the rows. */
@@ -36,9 +34,10 @@ namespace tanktread
     pack(const NodeSpace &space, const unsigned int cell, const Index cell_number)
     {
       std::vector<Entry> entries;
+      const unsigned int n = space.nodes_per_cell(), header = sizeof(Index) + n; // bytes before the entries
       std::vector<char>  result(header);
       std::memcpy(result.data(), &cell_number, sizeof(Index));
-      for (unsigned int a = 0; a < 27; ++a)
+      for (unsigned int a = 0; a < n; ++a)
         {
           const std::size_t  before = entries.size();
           const unsigned int node   = space.cell_nodes(cell)[a];
@@ -61,10 +60,10 @@ namespace tanktread
     unpack(const Bytes &bytes, CellRows &rows)
     {
       const char *const data = &*bytes.begin() + sizeof(Index);
-      const char       *next = data + 27;
+      const char       *next = data + rows.size();
       Index             cell_number;
       std::memcpy(&cell_number, &*bytes.begin(), sizeof(Index));
-      for (unsigned int a = 0; a < 27; ++a)
+      for (unsigned int a = 0; a < rows.size(); ++a)
         {
           rows[a].resize(static_cast<unsigned char>(data[a]));
           std::memcpy(rows[a].data(), next, rows[a].size() * sizeof(Entry));
@@ -74,15 +73,18 @@ namespace tanktread
     }
 
 
-    /** Row of the node at position (i, j, k) of 5 x 5 x 5 in a coarse cell; the result is in `row`, its entries for the same node added up. */
+    /** Row of the node at position (i, j, k) of 5 x 5 x 5, or of 3 x 3 x 3 of linear functions, in a coarse cell; the result is in `row`, its entries for the same node added up. */
     void
     interpolate(const CellRows &rows, const std::array<unsigned int, 3> &position, Row &row)
     {
-      constexpr double weights[5][3] = {{1, 0, 0}, {0.375, 0.75, -0.125}, {0, 1, 0}, {-0.125, 0.75, 0.375}, {0, 0, 1}};
+      constexpr double   quadratic[5][3] = {{1, 0, 0}, {0.375, 0.75, -0.125}, {0, 1, 0}, {-0.125, 0.75, 0.375}, {0, 0, 1}};
+      constexpr double   linear[3][3]    = {{1, 0, 0}, {0.5, 0.5, 0}, {0, 1, 0}};
+      const unsigned int line            = rows.size() == 8 ? 2 : 3; // nodes
+      const auto         weights         = line == 2 ? linear : quadratic;
       row.clear();
-      for (unsigned int a = 0; a < 27; ++a)
+      for (unsigned int a = 0; a < rows.size(); ++a)
         {
-          const double w = weights[position[0]][a % 3] * weights[position[1]][a / 3 % 3] * weights[position[2]][a / 9];
+          const double w = weights[position[0]][a % line] * weights[position[1]][a / line % line] * weights[position[2]][a / (line * line)];
           if (w != 0.)
             for (const Entry &entry : rows[a])
               row.push_back({w * entry.weight, entry.node});
@@ -180,7 +182,8 @@ namespace tanktread
     const NodeSpace                &fine        = number_fine_nodes();
     const std::vector<unsigned int> fine_number = owned_cell_numbers(triangulation);
     RowCollector                    collector(fine.n_owned());
-    CellRows                        rows;
+    const unsigned int              n_nodes = fine.nodes_per_cell(), n = n_nodes == 8 ? 2 : 3;
+    CellRows                        rows(n_nodes);
     Row                             row;
     std::vector<Index>              parent(fine.n_cells());
     triangulation.notify_ready_to_unpack(handle, [&](const auto &cell, const auto, const auto &bytes) {
@@ -189,7 +192,7 @@ namespace tanktread
         {
           const unsigned int *nodes                      = fine.cell_nodes(fine_number[cell->active_cell_index()]);
           parent[fine_number[cell->active_cell_index()]] = number;
-          for (unsigned int a = 0; a < 27; ++a)
+          for (unsigned int a = 0; a < n_nodes; ++a)
             if (collector.wants(nodes[a]))
               collector.add(nodes[a], rows[a]);
           return;
@@ -198,10 +201,10 @@ namespace tanktread
         {
           const unsigned int *nodes                                    = fine.cell_nodes(fine_number[cell->child(child)->active_cell_index()]);
           parent[fine_number[cell->child(child)->active_cell_index()]] = number;
-          for (unsigned int a = 0; a < 27; ++a)
+          for (unsigned int a = 0; a < n_nodes; ++a)
             if (collector.wants(nodes[a]))
               {
-                interpolate(rows, {{2 * (child % 2) + a % 3, 2 * (child / 2 % 2) + a / 3 % 3, 2 * (child / 4) + a / 9}}, row);
+                interpolate(rows, {{(n - 1) * (child % 2) + a % n, (n - 1) * (child / 2 % 2) + a / n % n, (n - 1) * (child / 4) + a / (n * n)}}, row);
                 collector.add(nodes[a], row);
               }
         }

@@ -19,13 +19,21 @@ namespace tanktread
 
 
   template <typename Number>
+  std::shared_ptr<const NodeSpace>
+  Multigrid<Number>::nodes(const FluidMesh &mesh) const
+  {
+    return std::make_shared<NodeSpace>(ScalarSpace(mesh, options_.elements, options_.elements == 2), 3);
+  }
+
+
+  template <typename Number>
   void
   Multigrid<Number>::start(const FluidMesh &mesh)
   {
     levels_.clear();
     smallest_viscosity_ = largest_viscosity_ = 1.;
     levels_.emplace_back();
-    levels_.back().space = std::make_shared<NodeSpace>(ScalarSpace(mesh, 2, true), 3);
+    levels_.back().space = nodes(mesh);
     coarse_solver_       = std::make_unique<CoarseSolver<Number>>(mesh, *levels_.back().space);
     finish_level();
   }
@@ -39,7 +47,7 @@ namespace tanktread
     levels_.emplace_back();
     Level                  &level = levels_.back();
     const InterpolationRows rows  = climb_with_interpolation(mesh, *coarse, [&]() -> const NodeSpace  &{
-      level.space = std::make_shared<NodeSpace>(ScalarSpace(mesh, 2, true), 3);
+      level.space = nodes(mesh);
       return *level.space;
     });
     level.transfer                = std::make_unique<LevelTransfer<Number>>(rows, *coarse, *level.space);
@@ -64,8 +72,24 @@ namespace tanktread
     level.laplace = std::make_unique<LaplaceOperator<Number>>(*level.space);
     for (auto *array : {&level.x, &level.b, &level.residual, &level.direction})
       array->resize(level.space->full_size(), Number(0));
-    if (levels_.size() > 1) // the first one is solved directly
+    if (levels_.size() == 1)
+      coarse_solver_->set_shift(shift_);
+    else
       prepare_smoother(level);
+  }
+
+
+  template <typename Number>
+  void
+  Multigrid<Number>::set_shift(const double shift)
+  {
+    if (shift == shift_)
+      return;
+    shift_ = shift;
+    coarse_solver_->set_shift(shift);
+    levels_.front().laplace->set_shift(shift);
+    for (std::size_t l = 1; l < levels_.size(); ++l)
+      prepare_smoother(levels_[l]);
   }
 
 
@@ -73,6 +97,7 @@ namespace tanktread
   void
   Multigrid<Number>::prepare_smoother(Level &level)
   {
+    level.laplace->set_shift(shift_);
     level.inverse_diagonal = level.laplace->diagonal();
     for (Number &d : level.inverse_diagonal)
       d = Number(1) / d;
@@ -96,7 +121,7 @@ namespace tanktread
         values = (*level.averages)(values);
       }
     const MPI_Comm communicator = levels_.front().space->partitioner()->get_mpi_communicator();
-    double         smallest = std::numeric_limits<double>::max(), largest = 0.; // a rank may have no cell
+    double         smallest = 1., largest = 1.; // a rank may have no cell; and the mass matrix of inertia counts like a viscosity of one
     for (const double mu : values)
       {
         smallest = std::min(smallest, mu);
@@ -111,7 +136,7 @@ namespace tanktread
   void
   Multigrid<Number>::solve_first_rung()
   {
-    // The eigenvalues of the direct solver times the matrix lie between the smallest and the largest viscosity.
+    // The eigenvalues of the direct solver times the matrix lie between the smallest and the largest viscosity, one included.
     Level        &level  = levels_.front();
     const double  center = 0.5 * (largest_viscosity_ + smallest_viscosity_), half = 0.5 * (largest_viscosity_ - smallest_viscosity_), t = center / half;
     Number *const x = level.x.data(), *const b = level.b.data(), *const residual = level.residual.data(), *const direction = level.direction.data();

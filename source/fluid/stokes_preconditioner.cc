@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace tanktread
 {
@@ -24,9 +25,10 @@ namespace tanktread
   } // namespace
 
 
-  StokesPreconditioner::StokesPreconditioner(const TaylorHoodSpace &space, Multigrid<float> &multigrid)
+  StokesPreconditioner::StokesPreconditioner(const TaylorHoodSpace &space, Multigrid<float> &multigrid, Multigrid<float> *const pressure_multigrid)
     : space_(space)
     , multigrid_(multigrid)
+    , pressure_multigrid_(pressure_multigrid)
     , instructions_(best_instruction_set())
     , mass_sizes_(space.pressure->cell_sizes())
     , load_(space.velocity->full_size())
@@ -64,6 +66,33 @@ namespace tanktread
   }
 
 
+  void
+  StokesPreconditioner::set_shift(const double shift)
+  {
+    if (shift != 0. && pressure_multigrid_ == nullptr)
+      throw std::logic_error("StokesPreconditioner::set_shift: made without a multigrid for the pressure.");
+    shift_ = shift;
+    multigrid_.set_shift(shift);
+  }
+
+
+  void
+  StokesPreconditioner::add_inertial_pressure() const
+  {
+    const unsigned int n = space_.pressure->n_owned();
+    float *const       b = pressure_multigrid_->right_hand_side();
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        b[4 * i]     = r_p_[i];
+        b[4 * i + 1] = b[4 * i + 2] = b[4 * i + 3] = 0.f;
+      }
+    pressure_multigrid_->v_cycle();
+    const float *const solution = pressure_multigrid_->solution();
+    for (unsigned int i = 0; i < n; ++i)
+      p_[i] += float(shift_) * solution[4 * i];
+  }
+
+
   ChebyshevArrays<float>
   StokesPreconditioner::arrays() const
   {
@@ -89,6 +118,8 @@ namespace tanktread
     for (float &r : r_p_)
       r = -r;
     chebyshev<1>([&](float *x, float *y) { apply_pressure_mass(x, y); }, range_, arrays(), true);
+    if (shift_ != 0.)
+      add_inertial_pressure();
     p.store(p_.data(), dst.block(pressure_block), false);
 
     p.update(p_.data());

@@ -33,6 +33,13 @@ namespace tanktread
     }
 
     void
+    check_inertia(const SceneParameters &scene, const SolverParameters &solver)
+    {
+      if (scene.reynolds_number > 0. && solver.coupling == TimeCoupling::explicit_euler)
+        throw InputError("Solver/Coupling is explicit; allowed with Scene/Reynolds number > 0: implicit");
+    }
+
+    void
     set(dealii::ParameterHandler &prm, const std::string &section, const std::string &name, const std::string &value)
     {
       prm.enter_subsection(section);
@@ -84,6 +91,7 @@ namespace tanktread
                                                        [&] { capsule.check(); },
                                                        [&] { check_mesh_file(capsule); },
                                                        [&] { shell.check(); },
+                                                       [&] { check_inertia(scene, solver); },
                                                        [&] { fluid_mesh.check(scene.box_side); },
                                                        [&] { output.check(); },
                                                        [&] { check_output_folder(output.directory); }};

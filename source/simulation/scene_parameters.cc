@@ -34,7 +34,10 @@ namespace tanktread
       "Modulus M in G and khat. Young: E h = 3 G_s, Young's modulus times thickness (for Skalak's law by definition). shear: the surface shear "
       "modulus G_s, so that G is the capillary number.");
     prm.add_parameter("Viscosity ratio", viscosity_ratio, "Viscosity inside over viscosity outside.", Double(0.01, 100.));
-    prm.add_parameter("Reynolds number", reynolds_number, "Re = rho gamma a^2 / mu. In this version 0: Stokes flow.", Double(0.));
+    prm.add_parameter("Reynolds number",
+                      reynolds_number,
+                      "Re = rho gamma a^2 / mu with shear, rho kappa_B / (mu^2 a) without, the same density everywhere; 0: Stokes flow.",
+                      Double(0.));
     prm.add_parameter("Box side", box_side, "Side of the cube, in a; walls at z = -side/2 and side/2, periodic in x and y.", Double(3.));
     prm.add_parameter("End time", end_time, "The run ends at this time.", Double(0.));
     prm.leave_subsection();
@@ -44,9 +47,7 @@ namespace tanktread
   SceneParameters::check() const
   {
     std::ostringstream message;
-    if (reynolds_number != 0.)
-      message << "Scene/Reynolds number is " << reynolds_number << "; not available in this version, allowed: 0";
-    else if (flow == Flow::quiescent && reduced_bending_modulus == 0.)
+    if (flow == Flow::quiescent && reduced_bending_modulus == 0.)
       message << "Scene/Reduced bending modulus is 0; allowed with Scene/Flow = quiescent: a number > 0 (time is in units of mu a^3 / kappa_B)";
     if (!message.str().empty())
       throw InputError(message.str());

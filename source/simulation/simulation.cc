@@ -7,6 +7,7 @@
 #include <tanktread/base/exceptions.h>
 #include <tanktread/base/mpi_errors.h>
 #include <tanktread/base/output_folder.h>
+#include <tanktread/fluid/field_transfer.h>
 #include <tanktread/simulation/simulation.h>
 
 #include <algorithm>
@@ -45,11 +46,14 @@ namespace tanktread
       run.G              = 1. / parameters.scene.surface_young_modulus();
       run.khat           = parameters.scene.bending_modulus() / parameters.scene.surface_young_modulus();
       run.box_side       = parameters.scene.box_side;
-      run.left_out       = {"inertia (Re = 0)"};
+      run.Re             = parameters.scene.reynolds_number;
+      if (run.Re == 0.)
+        run.left_out.push_back("inertia (Re = 0)");
       if (parameters.scene.viscosity_ratio == 1.)
         run.left_out.push_back("variable viscosity (ratio 1: Laplace form, each velocity component by itself)");
       else
-        run.included.push_back("variable viscosity (ratio " + number(parameters.scene.viscosity_ratio) + ": strain form, cells that the shell cuts integrated part by part)");
+        run.included.push_back("variable viscosity (ratio " + number(parameters.scene.viscosity_ratio) +
+                               ": strain form, cells that the shell cuts integrated part by part)");
       if (parameters.shell.thickness == 0.)
         run.left_out.push_back("shell thickness (0)");
       if (parameters.solver.interface == Interface::plain)
@@ -91,12 +95,20 @@ namespace tanktread
     , surface_(shape_.topology, triangle_quadrature(parameters.shell_mesh.quadrature), derivatives_needed(parameters))
     , shell_(surface_, parameters.shell, {parameters.scene.surface_young_modulus(), parameters.scene.bending_modulus()}, shape_.control_points)
     , distributed_shell_(shell_, shape_.topology, communicator)
-    , fluid_(communicator, parameters.scene.box_side, parameters.fluid_mesh)
+    , fluid_(communicator, parameters.scene.box_side, parameters.fluid_mesh, parameters.scene.reynolds_number > 0.)
     , coupling_surface_(make_coupling_surface(shape_, parameters.solver.interface, parameters.scene.viscosity_ratio, fluid_.mesh()))
     , coupling_(coupling_surface_, area_weights(coupling_surface_, shape_.control_points), parameters.solver.interface)
     , view_{shape_.topology, surface_, shell_, enclosed_volume(surface_, shape_.control_points)}
     , flow_{parameters.scene.flow == Flow::shear ? 1. : 0.}
-    , solver_(parameters.solver, distributed_shell_, surface_, coupling_, view_.initial_volume, flow_, timings_, parameters.scene.viscosity_ratio)
+    , solver_(parameters.solver,
+              distributed_shell_,
+              surface_,
+              coupling_,
+              view_.initial_volume,
+              flow_,
+              timings_,
+              parameters.scene.viscosity_ratio,
+              parameters.scene.reynolds_number)
     , stepper_(parameters.time, parameters.solver.coupling, parameters.scene.end_time, solver_, log_)
     , next_fields_(parameters.output.field_interval)
   {
@@ -115,12 +127,28 @@ namespace tanktread
   void
   Simulation::refine_around_shell()
   {
-    const Timings::Scope scope(timings_, "Fluid mesh and multigrid");
+    const Timings::Scope                 scope(timings_, "Fluid mesh and multigrid");
+    std::unique_ptr<const FieldTransfer> flows;
+    if (solver_.has_inertia() && n_steps_ > 0)
+      flows = std::make_unique<FieldTransfer>(fluid_.space(), stepper_.flows(state_));
     fluid_.adapt(coupling_.points(state_.x));
     solver_.attach(fluid_);
+    if (flows)
+      return flows->interpolate(fluid_.space(), stepper_.flows(state_));
     stepper_.forget_flow();
     fluid_.space().reinit(state_.fluid);
     state_.sides.clear();
+  }
+
+
+  unsigned int
+  Simulation::flow_on_new_mesh()
+  {
+    if (!solver_.has_inertia())
+      return solver_.solve_flow(state_);
+    if (n_steps_ == 0)
+      solver_.start_undisturbed(state_);
+    return 0;
   }
 
 
@@ -148,7 +176,7 @@ namespace tanktread
   {
     StepResult first;
     refine_around_shell();
-    first.linear_iterations = solver_.solve_flow(state_);
+    first.linear_iterations = flow_on_new_mesh();
 
     std::ostringstream text;
     text << "Shell: " << surface_.n_control_points() << " control points, " << surface_.n_points() << " quadrature points, " << coupling_surface_.n_points()
@@ -257,7 +285,7 @@ namespace tanktread
         if (!last && !fluid_.mesh().covers(coupling_.points(state_.x), coupling_.interface() == Interface::enriched ? 1. : 0.5))
           {
             refine_around_shell();
-            remeshing_iterations_ = solver_.solve_flow(state_);
+            remeshing_iterations_ = flow_on_new_mesh();
           }
       }
   }

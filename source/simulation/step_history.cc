@@ -27,6 +27,16 @@ namespace tanktread
   }
 
 
+  std::array<double, 2>
+  StepHistory::weights(const double length) const
+  {
+    if (!is_second_order())
+      return {{1., 0.}};
+    const double omega = length / (levels_[0].time - levels_[1].time);
+    return {{(1. + omega) * (1. + omega) / (1. + 2. * omega), -omega * omega / (1. + 2. * omega)}};
+  }
+
+
   double
   StepHistory::local_error(const double length, const ControlPoints &x) const
   {

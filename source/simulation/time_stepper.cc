@@ -30,6 +30,16 @@ namespace tanktread
   }
 
 
+  std::vector<FluidBlockVector *>
+  TimeStepper::flows(State &state)
+  {
+    std::vector<FluidBlockVector *> result = {&state.fluid};
+    if (previous_state_)
+      result.push_back(&previous_state_->fluid);
+    return result;
+  }
+
+
   void
   TimeStepper::forget_flow()
   {
@@ -64,9 +74,18 @@ namespace tanktread
   NewtonReport
   TimeStepper::try_step(const State &state, const double length, const bool from_extrapolation, State &next)
   {
-    const ImplicitStep step   = history_.step(length);
-    next                      = from_extrapolation ? extrapolated(state, length) : state;
-    const NewtonReport report = solver_.solve(next, step.xhat, step.tau);
+    const ImplicitStep step = history_.step(length);
+    next                    = from_extrapolation ? extrapolated(state, length) : state;
+    FluidVector uhat;
+    if (solver_.has_inertia())
+      {
+        const std::array<double, 2> weights = history_.weights(length);
+        uhat                                = state.fluid.block(velocity_block);
+        uhat *= weights[0];
+        if (weights[1] != 0.)
+          uhat.add(weights[1], previous_state_->fluid.block(velocity_block));
+      }
+    const NewtonReport report = solver_.solve(next, step.xhat, step.tau, &uhat);
     if (!report.converged)
       {
         std::ostringstream text;

@@ -65,6 +65,11 @@ namespace tanktread
       const Timings::Scope scope(timings_, "- Stokes operator");
       stokes_.vmult(dst, src);
     }
+    if (inertia_ != nullptr)
+      {
+        const Timings::Scope scope(timings_, "- inertia");
+        inertia_->add_derivative(src, dst);
+      }
     {
       const Timings::Scope scope(timings_, "- coupling");
       const ControlPoints  force = unknowns.force + unknowns.pressure_jump * shell_.volume_gradient();

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <stdexcept>
 
 namespace tanktread
 {
@@ -37,7 +38,8 @@ namespace tanktread
                              const double              volume,
                              const UndisturbedFlow     flow,
                              Timings                  &timings,
-                             const double              viscosity_ratio)
+                             const double              viscosity_ratio,
+                             const double              reynolds_number)
     : parameters_(parameters)
     , shell_(shell)
     , surface_(surface)
@@ -47,6 +49,7 @@ namespace tanktread
     , timings_(timings)
     , implicit_shell_(shell.communicator())
     , viscosity_ratio_(viscosity_ratio)
+    , reynolds_number_(reynolds_number)
   {
     coupling.set_viscosity_contrast({viscosity_ratio, flow.gradient()});
   }
@@ -58,6 +61,8 @@ namespace tanktread
     fluid_ = &fluid;
     coupling_.attach(fluid.space());
     viscosity_x_.resize(0, 3);
+    if (reynolds_number_ > 0.)
+      inertia_ = std::make_unique<Inertia>(fluid.space(), reynolds_number_, flow_.shear_rate);
   }
 
 
@@ -81,7 +86,7 @@ namespace tanktread
   double
   NewtonSolver::dissipation(const State &state) const
   {
-    double result = state.force.cwiseProduct(shell_velocity(state) - flow_.velocity(state.x)).sum();
+    double result = state.force.cwiseProduct(shell_velocity(state) - flow_.velocity(state.x)).sum() - inertial_power(state);
     if (viscosity_ratio_ == 1.)
       return result;
     const Eigen::Matrix3d strain_rate = 0.5 * (flow_.gradient() + flow_.gradient().transpose());
@@ -105,6 +110,8 @@ namespace tanktread
     fluid_->stokes().vmult(r.fluid, state.fluid);
     if (viscosity_ratio_ != 1.)
       r.fluid.block(velocity_block) += undisturbed_load_;
+    if (inertia_ && tau > 0.)
+      inertia_->add_residual(state.fluid, r.fluid);
     ExtendedForces forces;
     coupling_.extend_whole(state.force, forces);
     const ControlPoints velocity = coupling_.interpolate(state.fluid, forces) + flow_.velocity(state.x);
@@ -189,6 +196,8 @@ namespace tanktread
     if (choice.derivatives == PointDerivatives::complete)
       gradients = coupling_.velocity_gradients(state.fluid);
     gradients.col(2).array() += flow_.shear_rate; // du_x/dz
+    if (inertia_)
+      inertia_->linearise(state.fluid);
     return {shell_, surface_, coupling_, state, shell_velocity(state), gradients, choice, implicit_shell_};
   }
 
@@ -214,7 +223,7 @@ namespace tanktread
   {
     const Timings::Scope           scope(timings_, "Linear solver");
     const unsigned int             n_points = r.x.rows();
-    const MonolithicOperator       matrix(fluid_->stokes(), shell, &timings_);
+    const MonolithicOperator       matrix(fluid_->stokes(), shell, &timings_, shell.tau() > 0. ? inertia_.get() : nullptr);
     const MonolithicPreconditioner preconditioner(fluid_->preconditioner(), shell, volume_ / viscosity_ratio_, &timings_);
 
     const ControlPoints dx0 = shell.displacement_of_residual(r.x, r.volume);
@@ -332,10 +341,17 @@ namespace tanktread
 
 
   NewtonReport
-  NewtonSolver::solve(State &state, const ControlPoints &xhat, const double tau)
+  NewtonSolver::solve(State &state, const ControlPoints &xhat, const double tau, const FluidVector *const uhat)
   {
     NewtonReport report;
     State        trial = state;
+    if (inertia_)
+      {
+        if (uhat == nullptr)
+          throw std::logic_error("NewtonSolver::solve: a step with inertia needs uhat.");
+        inertia_->begin_step(*uhat, tau);
+        fluid_->set_shift(inertia_->mass());
+      }
     try
       {
         if (viscosity_ratio_ != 1.)
@@ -399,11 +415,29 @@ namespace tanktread
   }
 
 
+  void
+  NewtonSolver::start_undisturbed(State &state)
+  {
+    fluid_->space().reinit(state.fluid);
+    state.pressure_jump = 0.;
+    state.force         = shell_.force(state.x);
+    coupling_.move(state.x, volume_gradient(surface_, state.x));
+  }
+
+
+  double
+  NewtonSolver::inertial_power(const State &state) const
+  {
+    return inertia_ && inertia_->mass() > 0. ? inertia_->power(state.fluid) : 0.;
+  }
+
+
   unsigned int
   NewtonSolver::solve_flow(State &state)
   {
     constexpr unsigned int n_sweeps = 3; // for the viscous part of the jumps
-    state.force                     = shell_.force(state.x);
+    fluid_->set_shift(0.);
+    state.force = shell_.force(state.x);
     set_viscosity(state.x);
     unsigned int iterations = solve_with_fixed_jumps(state, Points::follow);
     for (unsigned int i = 0; i < n_sweeps && viscosity_ratio_ != 1. && coupling_.interface() == Interface::enriched; ++i)

@@ -442,6 +442,10 @@ TEST(Log, HeaderNamesVersionsScalesAndWhatIsLeftOut)
     EXPECT_NE(screen.str().find(part), std::string::npos) << part;
   EXPECT_NE(screen.str().find("Ca   = 0.15 "), std::string::npos) << screen.str();
   EXPECT_NE(screen.str().find("box  = 12 "), std::string::npos) << screen.str();
+  EXPECT_EQ(screen.str().find("with inertia"), std::string::npos) << screen.str();
+  run.Re = 0.5;
+  log.header(run);
+  EXPECT_NE(screen.str().find("Re   = 0.5       rho gamma a^2 / mu: with inertia"), std::string::npos) << screen.str();
 }
 
 TEST(Log, ColumnNamesEveryTwentySteps)

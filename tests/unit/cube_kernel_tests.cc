@@ -87,21 +87,26 @@ namespace
       dealii::GridGenerator::hyper_cube(cube);
       const dealii::FE_Q<3>   fe(2);
       const dealii::QGauss<3> quadrature(3);
-      dealii::FEValues<3>     values(fe, quadrature, dealii::update_gradients);
+      dealii::FEValues<3>     values(fe, quadrature, dealii::update_values | dealii::update_gradients);
       values.reinit(cube.begin_active());
       const auto order = dealii::FETools::lexicographic_to_hierarchic_numbering<3>(2);
       for (unsigned int q = 0; q < 27; ++q)
         {
           weight[q] = quadrature.weight(q);
+          z[q]      = quadrature.point(q)[2];
           for (unsigned int a = 0; a < 27; ++a)
-            gradient[q][a] = values.shape_grad(order[a], q);
+            {
+              value[q][a]    = values.shape_value(order[a], q);
+              gradient[q][a] = values.shape_grad(order[a], q);
+            }
         }
     }
 
     std::vector<double>                                  laplace, pressure_mass; // row by row
     std::array<std::vector<double>, 3>                   divergence;
-    std::array<double, 27>                               weight;
-    std::array<std::array<dealii::Tensor<1, 3>, 27>, 27> gradient; // at Gauss points, of shape functions
+    std::array<double, 27>                               weight, z;
+    std::array<std::array<double, 27>, 27>               value;    // at Gauss points, of shape functions
+    std::array<std::array<dealii::Tensor<1, 3>, 27>, 27> gradient; // likewise
   };
 
   /** What the kernels should have added to arrays of zeros. */
@@ -173,6 +178,45 @@ namespace
       });
     }
 
+    void
+    add_helmholtz(const double shift, const std::vector<double> &u, std::vector<double> &y) const
+    {
+      add_laplace(u, y);
+      add_derivative_of_inertia(std::vector<double>(cubes_.n, 0.), {shift, 0., 0.}, u, u, y);
+    }
+
+    /** mass (du, v) + convection ((u_inf + u) . grad du + du . grad (u_inf + theta u), v) */
+    void
+    add_derivative_of_inertia(const std::vector<double>        &lower_z,
+                              const InertiaCoefficients<double> factor,
+                              const std::vector<double>        &u,
+                              const std::vector<double>        &du,
+                              std::vector<double>              &y,
+                              const double                      theta = 1.) const
+    {
+      for_cubes([&](const double h, const unsigned int *nodes, const unsigned int *, const unsigned int cube) {
+        for (unsigned int q = 0; q < 27; ++q)
+          {
+            dealii::Tensor<1, 3> wind, v;
+            dealii::Tensor<2, 3> wind_gradient, v_gradient; // [component][direction]
+            for (unsigned int a = 0; a < 27; ++a)
+              for (unsigned int c = 0; c < 3; ++c)
+                {
+                  wind[c] += u[4 * nodes[a] + c] * unit_.value[q][a];
+                  v[c] += du[4 * nodes[a] + c] * unit_.value[q][a];
+                  wind_gradient[c] += theta / h * u[4 * nodes[a] + c] * unit_.gradient[q][a];
+                  v_gradient[c] += 1. / h * du[4 * nodes[a] + c] * unit_.gradient[q][a];
+                }
+            wind[0] += factor.shear_rate * (lower_z[cube] + h * unit_.z[q]);
+            wind_gradient[0][2] += factor.shear_rate;
+            const dealii::Tensor<1, 3> f = h * h * h * unit_.weight[q] * (factor.mass * v + factor.convection * (v_gradient * wind + wind_gradient * v));
+            for (unsigned int a = 0; a < 27; ++a)
+              for (unsigned int c = 0; c < 3; ++c)
+                y[4 * nodes[a] + c] += f[c] * unit_.value[q][a];
+          }
+      });
+    }
+
   private:
     template <typename Function>
     void
@@ -233,7 +277,16 @@ namespace
     std::vector<double> viscosity = random.random_numbers(27 * RandomCubes::n);
     for (double &mu : viscosity)
       mu = 1.1 + mu;
-    std::vector<double> laplace = y_u, gradient = y_u, viscous = y_u, stokes_u, stokes_p = y_p, mass = y_p;
+    const std::vector<double>         du = random.random_numbers(n_u), lower_z = random.random_numbers(RandomCubes::n);
+    const InertiaCoefficients<double> inertial = {0.7, 1.3, 1.1};
+    std::vector<double> laplace = y_u, helmholtz = y_u, inertia = y_u, inertia_derivative = y_u, gradient = y_u, viscous = y_u, stokes_u, stokes_p = y_p,
+                        mass = y_p;
+    reference.add_helmholtz(2.3, u, helmholtz);
+    std::vector<double> masses;
+    for (unsigned int i = 0; i < cubes.n; ++i)
+      masses.push_back(2.3 * std::pow(cubes.size[i], 3));
+    reference.add_derivative_of_inertia(lower_z, inertial, u, u, inertia, 0.);
+    reference.add_derivative_of_inertia(lower_z, inertial, u, du, inertia_derivative);
     reference.add_laplace(u, laplace);
     reference.add_pressure_gradient(1., p, gradient);
     reference.add_viscous(viscosity, u, viscous);
@@ -242,13 +295,23 @@ namespace
     reference.subtract_divergence(u, stokes_p);
     reference.add_pressure_mass(p, mass);
 
-    const auto u_n = converted<Number>(u), p_n = converted<Number>(p), viscosity_n = converted<Number>(viscosity);
+    const InertiaCoefficients<Number> inertial_n = {Number(inertial.mass), Number(inertial.convection), Number(inertial.shear_rate)};
+    const auto u_n = converted<Number>(u), du_n = converted<Number>(du), p_n = converted<Number>(p), viscosity_n = converted<Number>(viscosity);
     double     result = 0.;
     for (const InstructionSet set : instruction_sets())
       {
         auto found = converted<Number>(y_u), found_p = converted<Number>(y_p);
         add_laplace(set, cubes, u_n.data(), found.data());
         result = std::max(result, difference(found, laplace));
+        found  = converted<Number>(y_u);
+        add_helmholtz(set, cubes, masses.data(), u_n.data(), found.data());
+        result = std::max(result, difference(found, helmholtz));
+        found  = converted<Number>(y_u);
+        add_inertia(set, cubes, lower_z.data(), inertial_n, u_n.data(), found.data());
+        result = std::max(result, difference(found, inertia));
+        found  = converted<Number>(y_u);
+        add_inertia_derivative(set, cubes, lower_z.data(), inertial_n, u_n.data(), du_n.data(), found.data());
+        result = std::max(result, difference(found, inertia_derivative));
         found  = converted<Number>(y_u);
         add_pressure_gradient(set, cubes, p_n.data(), found.data());
         result = std::max(result, difference(found, gradient));

@@ -115,7 +115,7 @@ TEST(Parameters, WrongValuesAreRefused)
   expect_error("Scene/Reduced bending modulus=-1", "allowed: a number >= 0");
   expect_error("Scene/Viscosity ratio=0.001", "allowed: a number from 0.01 to 100");
   expect_error("Scene/Viscosity ratio=200", "allowed: a number from 0.01 to 100");
-  expect_error("Scene/Reynolds number=0.1", "not available in this version, allowed: 0");
+  expect_error("Scene/Reynolds number=-1", "allowed: a number >= 0");
   expect_error("Scene/Flow=poiseuille", "allowed: one of shear, quiescent");
   expect_error("Scene/Flow=quiescent", "Scene/Reduced bending modulus is 0");
   expect_error("Scene/Box side=1", "allowed: a number >= 3");
@@ -133,6 +133,9 @@ TEST(Parameters, MeaninglessPairsAreRefused)
 {
   EXPECT_NE(error_of({"Capsule/Membrane law=Skalak", "Capsule/Thickness=0.1"}).find("Capsule/Thickness"), std::string::npos);
   EXPECT_NE(error_of({"Capsule/Shape=ellipsoid", "Capsule/Axes=3, 2, 1", "Capsule/Inclined axis=symmetry"}).find("Capsule/Inclined axis"), std::string::npos);
+  EXPECT_NE(
+    error_of({"Scene/Reynolds number=1", "Solver/Coupling=explicit"}).find("Solver/Coupling is explicit; allowed with Scene/Reynolds number > 0: implicit"),
+    std::string::npos);
 }
 
 TEST(Parameters, ShapeFromFileNeedsAFile)

@@ -22,6 +22,7 @@ namespace tanktread
     double       G        = 0.;   // mu gamma a / (E h); unused without shear
     double       khat     = 0.;   // kappa_B / (a^2 E h)
     double       box_side = 0.;   // in a
+    double       Re       = 0.;   // Reynolds number; 0: no line
 
     std::vector<std::string> included; // physics that the scene asks for beyond the simplest
     std::vector<std::string> left_out; // what the scene does not need: "inertia (Re = 0)"

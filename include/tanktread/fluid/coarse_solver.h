@@ -14,13 +14,19 @@ namespace tanktread
   /**
    * Inverts the velocities' Laplace matrix on a uniform mesh, periodic in x and y, zero at the walls. There it is K x M x M + M x K x M + M x M x K with one-dimensional matrices K
    * and M of the whole box, which the eigenvectors of K v = lambda M v diagonalise together. Every rank solves the whole (small) problem.
+   *
+   * For linear functions there is no condition at the walls, and the constant, which is in the kernel then, is left out of the solution.
    */
   template <typename Number>
   class CoarseSolver
   {
   public:
-    /** `mesh` has to be on its first rung, `space` its quadratic nodes. Collective. */
+    /** `mesh` has to be on its first rung, `space` its quadratic or linear nodes. Collective. */
     CoarseSolver(const FluidMesh &mesh, const NodeSpace &space);
+
+    /** From now on A + shift times the mass matrix is inverted. */
+    void
+    set_shift(double shift);
 
     /** u = A^{-1} f, owned entries of full arrays. Collective. */
     void
@@ -33,6 +39,7 @@ namespace tanktread
     MPI_Comm                  communicator_;
     std::vector<unsigned int> place_; // of the owned nodes in the lattice, x fastest
     Matrix                    periodic_modes_, wall_modes_;
+    Eigen::VectorXd           periodic_eigenvalue_, wall_eigenvalue_;
     Vector                    inverse_eigenvalue_; // of the lattice of modes
     mutable Vector            values_;
   };

@@ -39,6 +39,16 @@ namespace tanktread
   void
   add_laplace(InstructionSet set, const Cubes &cubes, const Number *u, Number *y);
 
+  /** y += (Laplace matrix + mass times that of the unit cube's shape functions) u. @param mass one number a cube: the volume times what the mass matrix is to be multiplied by. */
+  template <typename Number>
+  void
+  add_helmholtz(InstructionSet set, const Cubes &cubes, const double *mass, const Number *u, Number *y);
+
+  /** y += Laplace matrix of the linear functions times p, at the pressure nodes, for each of four numbers a node. */
+  template <typename Number>
+  void
+  add_linear_laplace(const Cubes &cubes, const Number *p, Number *y);
+
   /** (y_u, y_p) += [A, -B^T; -B, 0] (u, p), with A as in add_laplace and B_j,cb = integral of psi_j d phi_b/dx_c. */
   template <typename Number>
   void
@@ -76,6 +86,33 @@ namespace tanktread
   template <typename Number>
   void
   add_viscous_stokes(InstructionSet set, const Cubes &cubes, const Number *viscosity, Number least, const Number *u, const Number *p, Number *y_u, Number *y_p);
+
+  /** Factors of the terms of inertia, and the shear rate of the undisturbed flow (shear_rate z, 0, 0), which no array could hold at both walls. */
+  template <typename Number>
+  struct InertiaCoefficients
+  {
+    Number mass, convection, shear_rate;
+  };
+
+  /**
+   * y += mass (u, v) + convection ((u_inf + u) . grad u + u . grad u_inf, v), by the 3 x 3 x 3 Gauss rule: the first term exactly.
+   *
+   * @param lower_z one number a cube: z of its lower face.
+   */
+  template <typename Number>
+  void
+  add_inertia(InstructionSet set, const Cubes &cubes, const double *lower_z, InertiaCoefficients<Number> factor, const Number *u, Number *y);
+
+  /** The derivative at u: y += mass (du, v) + convection ((u_inf + u) . grad du + du . grad (u_inf + u), v). */
+  template <typename Number>
+  void
+  add_inertia_derivative(InstructionSet              set,
+                         const Cubes                &cubes,
+                         const double               *lower_z,
+                         InertiaCoefficients<Number> factor,
+                         const Number               *u,
+                         const Number               *du,
+                         Number                     *y);
 } // namespace tanktread
 
 #endif

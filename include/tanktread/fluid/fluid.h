@@ -14,9 +14,13 @@ namespace tanktread
   class Fluid
   {
   public:
-    Fluid(MPI_Comm communicator, double side, const FluidMeshParameters &parameters)
+    /** @param inertia whether set_shift() is going to be called: prepares for it, at some cost. */
+    Fluid(MPI_Comm communicator, double side, const FluidMeshParameters &parameters, bool inertia = false)
       : mesh_(communicator, side, parameters)
-    {}
+    {
+      if (inertia)
+        pressure_multigrid_ = std::make_unique<Multigrid<float>>(linear_elements());
+    }
 
     /** Refines around `points`; see FluidMesh::aim_at(). Returns true if the mesh changed: all vectors of before are void then. Collective. */
     bool
@@ -29,13 +33,12 @@ namespace tanktread
       preconditioner_.reset();
       stokes_.reset();
       space_.reset();
-      mesh_.restart();
-      multigrid_.start(mesh_);
-      while (!mesh_.on_last_rung())
-        multigrid_.climb(mesh_);
+      if (pressure_multigrid_)
+        climb(*pressure_multigrid_);
+      climb(multigrid_);
       space_          = std::make_unique<TaylorHoodSpace>(mesh_, multigrid_.space());
       stokes_         = std::make_unique<StokesOperator>(*space_);
-      preconditioner_ = std::make_unique<StokesPreconditioner>(*space_, multigrid_);
+      preconditioner_ = std::make_unique<StokesPreconditioner>(*space_, multigrid_, pressure_multigrid_.get());
       return true;
     }
 
@@ -53,6 +56,13 @@ namespace tanktread
     viscosity() const
     {
       return viscosity_.get();
+    }
+
+    /** The preconditioner is for A + shift times the velocities' mass matrix from now on, as inertia asks for. Collective. */
+    void
+    set_shift(const double shift)
+    {
+      preconditioner_->set_shift(shift);
     }
 
     const FluidMesh &
@@ -82,8 +92,27 @@ namespace tanktread
     }
 
   private:
+    static Multigrid<float>::Options
+    linear_elements()
+    {
+      Multigrid<float>::Options options;
+      options.elements = 1;
+      return options;
+    }
+
+    /** The way up is the same each time, so that both multigrids end on the same mesh with the same partition. */
+    void
+    climb(Multigrid<float> &multigrid)
+    {
+      mesh_.restart();
+      multigrid.start(mesh_);
+      while (!mesh_.on_last_rung())
+        multigrid.climb(mesh_);
+    }
+
     FluidMesh                             mesh_;
     Multigrid<float>                      multigrid_;
+    std::unique_ptr<Multigrid<float>>     pressure_multigrid_; // with inertia
     std::unique_ptr<TaylorHoodSpace>      space_;
     std::unique_ptr<StokesOperator>       stokes_;
     std::unique_ptr<StokesPreconditioner> preconditioner_;

@@ -9,7 +9,10 @@
 
 namespace tanktread
 {
-  /** (mu grad u, grad v) for each velocity component on the free nodes, on full arrays (see NodeSpace); mu is 1 or one number a cell. `space` is kept by reference. */
+  /**
+   * (mu grad u, grad v) + shift (u, v) for each velocity component on the free nodes, on full arrays (see NodeSpace); mu is 1 or one number a cell, shift = 0 at first. `space` is kept by
+   * reference. Its nodes may be those of linear functions too, then mu has to stay 1 and the shift zero.
+   */
   template <typename Number>
   class LaplaceOperator
   {
@@ -23,6 +26,10 @@ namespace tanktread
     /** y = A u for owned nodes; updates the rest of u, and what y has beyond its owned nodes is void. Collective. */
     void
     apply(Number *u, Number *y) const;
+
+    /** Inertia puts `shift` times the mass matrix to the operator. */
+    void
+    set_shift(double shift);
 
     /** Diagonal of A, one number an owned node, hanging nodes included exactly. */
     std::vector<Number>
@@ -45,6 +52,7 @@ namespace tanktread
     const NodeSpace     &space_;
     const InstructionSet instructions_;
     std::vector<double>  own_factors_; // empty with the viscosity 1
+    std::vector<double>  masses_;      // shift times the cells' volumes; empty without a shift
   };
 } // namespace tanktread
 

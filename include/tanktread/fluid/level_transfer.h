@@ -24,9 +24,9 @@ namespace tanktread
   };
 
   /**
-   * Lets `mesh` climb one rung and returns the interpolation of quadratic fields from the nodes `coarse` of the rung before.
+   * Lets `mesh` climb one rung and returns the interpolation of quadratic or linear fields from the nodes `coarse` of the rung before.
    *
-   * Each cell takes along the free nodes that its 27 nodes follow from, p4est brings that to the rank which owns the cell afterwards: the partitions of the two rungs need not match.
+   * Each cell takes along the free nodes that its nodes follow from, p4est brings that to the rank which owns the cell afterwards: the partitions of the two rungs need not match.
    *
    * @param number_fine_nodes called on the new rung, returns its nodes. Collective.
    */

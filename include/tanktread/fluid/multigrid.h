@@ -26,6 +26,8 @@ namespace tanktread
     {
       unsigned int degree = 2;  // of the polynomial, before and after the coarse correction
       double       range  = 5.; // it reduces errors with eigenvalues between largest / range and largest
+      unsigned int elements =
+        2; // their degree: 2 for velocities, 1 for scalars like the pressure, in the first of three components, without a condition at the walls
     };
 
     explicit Multigrid(const Options &options = {});
@@ -46,6 +48,10 @@ namespace tanktread
      */
     void
     set_viscosity(const std::vector<double> &viscosities);
+
+    /** From now on v_cycle() is for A + shift times the mass matrix, also after the next climb. Costs about as much as two cycles unless that is so already. Collective. */
+    void
+    set_shift(double shift);
 
     /** Array for the right-hand side on the last rung: owned entries of a full array. */
     Number *
@@ -94,6 +100,8 @@ namespace tanktread
       dealii::AlignedVector<Number>            x, b, residual, direction; // full arrays
     };
 
+    std::shared_ptr<const NodeSpace>
+    nodes(const FluidMesh &mesh) const;
     void
     finish_level();
     /** Diagonal and largest eigenvalue. */
@@ -109,6 +117,7 @@ namespace tanktread
     cycle(unsigned int l);
 
     Options                               options_;
+    double                                shift_ = 0.;
     std::vector<Level>                    levels_;
     std::unique_ptr<CoarseSolver<Number>> coarse_solver_;
     double                                smallest_viscosity_ = 1., largest_viscosity_ = 1.; // on the first rung

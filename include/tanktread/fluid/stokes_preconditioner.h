@@ -13,12 +13,19 @@ namespace tanktread
   /**
    * Upper block-triangular: pressure first, z_p = -mu M_p^{-1} r_p (the mass matrix is spectrally equivalent to the Schur complement B A^{-1} B^T / mu),
    * then one multigrid V-cycle for the velocities of r_u + B^T z_p. All in single precision, which costs no iteration.
+   *
+   * Where inertia puts s times the mass matrix to A, the Schur complement's inverse is about mu M_p^{-1} + s L_p^{-1} (Cahouet and Chabard), L_p the pressures' Laplace matrix, and one
+   * V-cycle stands for L_p^{-1}.
    */
   class StokesPreconditioner
   {
   public:
-    /** Keeps both by reference; the multigrid has climbed to the mesh of `space`. Collective. */
-    StokesPreconditioner(const TaylorHoodSpace &space, Multigrid<float> &multigrid);
+    /** Keeps both by reference, and the pointer; the multigrids have climbed to the mesh of `space`. Collective. @param pressure_multigrid of linear elements, needed with inertia only. */
+    StokesPreconditioner(const TaylorHoodSpace &space, Multigrid<float> &multigrid, Multigrid<float> *pressure_multigrid = nullptr);
+
+    /** From now on for A + shift times the velocities' mass matrix. Throws std::logic_error if there is no multigrid for the pressure that a shift needs. Collective. */
+    void
+    set_shift(double shift);
 
     /** Weights the pressures' mass with 1/mu and gives the multigrid the cells' means of mu. Collective. */
     void
@@ -43,11 +50,16 @@ namespace tanktread
     /** Diagonal of the pressure mass and the range of its eigenvalues. */
     void
     prepare_pressure_mass();
+    /** p_ += shift L_p^{-1} r_p_ */
+    void
+    add_inertial_pressure() const;
     ChebyshevArrays<float>
     arrays() const;
 
     const TaylorHoodSpace               &space_;
     Multigrid<float>                    &multigrid_;
+    Multigrid<float> *const              pressure_multigrid_;
+    double                               shift_ = 0.;
     const InstructionSet                 instructions_;
     std::vector<double>                  mass_sizes_;       // of cubes with the pressure mass matrix of the cells: h mu^{-1/3}
     std::vector<float>                   inverse_diagonal_; // of the pressure mass matrix

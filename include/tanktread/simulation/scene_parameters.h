@@ -35,7 +35,7 @@ namespace tanktread
     double shear_number            = 0.05; // G = mu gamma a / M
     double reduced_bending_modulus = 0.;   // khat = kappa_B / (a^2 M)
     double viscosity_ratio         = 1.;   // inside / outside
-    double reynolds_number         = 0.;   // rho gamma a^2 / mu
+    double reynolds_number         = 0.;   // rho gamma a^2 / mu, quiescent: rho kappa_B / (mu^2 a); the density in the scene's units
     double box_side                = 10.;
     double end_time                = 10.;
 

@@ -34,9 +34,12 @@ namespace tanktread
     start();
     void
     advance();
-    /** New mesh around the present shell, with a zero flow. */
+    /** New mesh around the present shell, with a zero flow, or with those that inertia remembers. */
     void
     refine_around_shell();
+    /** The flow there, to start with or to extrapolate from: Stokes flow, or with inertia what has been carried over. Returns the linear iterations. */
+    unsigned int
+    flow_on_new_mesh();
     bool
     is_steady(const InertiaEllipsoid &before, const InertiaEllipsoid &after, double length);
     /** Whether something that happens at multiples of `interval` (0: always) is due; moves `next` to the next time. */

@@ -6,6 +6,7 @@
 
 #include <tanktread/simulation/time_stepping.h>
 
+#include <array>
 #include <deque>
 
 namespace tanktread
@@ -25,6 +26,10 @@ namespace tanktread
     /** The scheme for a step of `length` from the last level: backward Euler while there is only one. */
     ImplicitStep
     step(double length) const;
+
+    /** What weighs the last level and the one before in ImplicitStep::xhat, for other fields with the same scheme. */
+    std::array<double, 2>
+    weights(double length) const;
 
     /**
      * Local error of a step to x (root mean square over the control points, in a), from the divided differences of the positions,

@@ -9,6 +9,7 @@
 #include <tanktread/solver/newton_solver.h>
 
 #include <memory>
+#include <vector>
 
 namespace tanktread
 {
@@ -35,7 +36,11 @@ namespace tanktread
     void
     start(double time, const ControlPoints &x);
 
-    /** To be called when the fluid's mesh has changed: nothing is extrapolated over that. The positions of the shell stay known to the scheme. */
+    /** The flows that the time scheme looks back to where there is inertia: that of `state`, the last level, and the one before, if there is one. To be carried over changes of mesh. */
+    std::vector<FluidBlockVector *>
+    flows(State &state);
+
+    /** To be called when the fluid's mesh has changed and flows() are not carried over: nothing is extrapolated over that. The positions of the shell stay known to the scheme. */
     void
     forget_flow();
 

@@ -5,6 +5,7 @@
 #define tanktread_solver_monolithic_system_h
 
 #include <tanktread/fluid/fluid.h>
+#include <tanktread/fluid/inertia.h>
 #include <tanktread/solver/linearised_shell.h>
 
 namespace tanktread
@@ -38,14 +39,17 @@ namespace tanktread
    *                                                      - B du = ...
    *                                                 - d(v . J u) = ...     volume flux through the shell
    *         Z_tau (Z_tau + tau (K - pi H_V))^{-1} (dG + (K - pi H_V) dx) = ...     dx = displacement(du) + known part
+   *
+   * With inertia its derivative is added to A.
    */
   class MonolithicOperator
   {
   public:
-    /** @param timings where to add what the parts take, or null. */
-    MonolithicOperator(const StokesOperator &stokes, const LinearisedShell &shell, Timings *timings = nullptr)
+    /** @param timings where to add what the parts take, or null. @param inertia linearised, or null. */
+    MonolithicOperator(const StokesOperator &stokes, const LinearisedShell &shell, Timings *timings = nullptr, const Inertia *inertia = nullptr)
       : stokes_(stokes)
       , shell_(shell)
+      , inertia_(inertia)
       , timings_(timings)
     {}
 
@@ -55,6 +59,7 @@ namespace tanktread
   private:
     const StokesOperator  &stokes_;
     const LinearisedShell &shell_;
+    const Inertia *const   inertia_;
     Timings *const         timings_;
     mutable ExtendedForces forces_;
   };

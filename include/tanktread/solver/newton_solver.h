@@ -11,6 +11,7 @@
 #include <tanktread/solver/solver_parameters.h>
 #include <tanktread/solver/state.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -57,7 +58,10 @@ namespace tanktread
   class NewtonSolver
   {
   public:
-    /** All arguments of class type but the flow are kept by reference. `volume` is V0. @param viscosity_ratio inside over outside. */
+    /**
+     * All arguments of class type but the flow are kept by reference. `volume` is V0. @param viscosity_ratio inside over outside. @param reynolds_number the density in the scene's units; 0 leaves inertia
+     * out.
+     */
     NewtonSolver(const SolverParameters   &parameters,
                  const DistributedShell   &shell,
                  const SubdivisionSurface &surface,
@@ -65,7 +69,14 @@ namespace tanktread
                  double                    volume,
                  UndisturbedFlow           flow,
                  Timings                  &timings,
-                 double                    viscosity_ratio = 1.);
+                 double                    viscosity_ratio = 1.,
+                 double                    reynolds_number = 0.);
+
+    bool
+    has_inertia() const
+    {
+      return reynolds_number_ > 0.;
+    }
 
     /** To be called for every new fluid mesh; the fluid is kept by reference and gets the viscosity. */
     void
@@ -80,16 +91,26 @@ namespace tanktread
      * Where the linear solver fails with the exact tangent, which may be indefinite, the positive one takes its place for the rest of the step, and until the solution of the next is near.
      *
      * Iterations whose displacement |r| tau is longer than a quarter of a cell freeze the points, the others use the complete derivative and converge quadratically.
+     *
+     * @param uhat velocities in the role of xhat, as with inertia they have a time scheme too; not read without it.
      */
     NewtonReport
-    solve(State &state, const ControlPoints &xhat, double tau);
+    solve(State &state, const ControlPoints &xhat, double tau, const FluidVector *uhat = nullptr);
 
     /**
-     * The flow at fixed shell `state.x` and forces F = f(x): u, p and pi such that no volume flows through the shell. Returns the linear iterations. Throws
+     * The Stokes flow at fixed shell `state.x` and forces F = f(x): u, p and pi such that no volume flows through the shell. Returns the linear iterations. Throws
      * NumericalError if it fails. Collective.
      */
     unsigned int
     solve_flow(State &state);
+
+    /** What a liquid with inertia starts from, which cannot jump to another flow: no disturbance, and F = f(x). Collective. */
+    void
+    start_undisturbed(State &state);
+
+    /** Power that goes into the disturbance's kinetic energy, by the last step; zero without inertia. Collective. */
+    double
+    inertial_power(const State &state) const;
 
     /** Velocity of the control points, J u + u_inf; the coupling's points must be at state.x, as they are after a solve. Collective. */
     ControlPoints
@@ -182,9 +203,10 @@ namespace tanktread
     ImplicitShell             implicit_shell_;
     Tangent                   tangent_ = Tangent::exact; // to start a step with
     KrylovBasis               krylov_basis_;
-    const double              viscosity_ratio_;
+    const double              viscosity_ratio_, reynolds_number_;
     ControlPoints             viscosity_x_;      // where the shell was when the viscosity was set
     FluidVector               undisturbed_load_; // 2 ((mu - 1) eps(u_inf), eps(v)); empty with one viscosity
+    std::unique_ptr<Inertia>  inertia_;          // none without it
     Fluid                    *fluid_ = nullptr;
   };
 } // namespace tanktread
