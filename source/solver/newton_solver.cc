@@ -215,7 +215,7 @@ namespace tanktread
     const Timings::Scope           scope(timings_, "Linear solver");
     const unsigned int             n_points = r.x.rows();
     const MonolithicOperator       matrix(fluid_->stokes(), shell, &timings_);
-    const MonolithicPreconditioner preconditioner(fluid_->preconditioner(), shell, volume_ / viscosity_ratio_, &timings_);
+    const MonolithicPreconditioner preconditioner(fluid_->preconditioner(), shell, volume_ / (0.5 * (1. + viscosity_ratio_)), &timings_);
 
     const ControlPoints dx0 = shell.displacement_of_residual(r.x, r.volume);
     FluidBlockVector    rhs = monolithic_vector(fluid_->space(), n_points), solution(rhs);
