@@ -2,6 +2,7 @@
 // Part of Tanktread: what the capsule adds to the stress of the suspension.
 
 #include <tanktread/simulation/particle_stress.h>
+#include <tanktread/surface/surface_geometry.h>
 
 #include <limits>
 
@@ -12,6 +13,16 @@ namespace tanktread
   {
     const Eigen::Matrix3d moment    = x.transpose() * force;
     const Eigen::Matrix3d symmetric = -0.5 * (moment + moment.transpose());
+    return symmetric - symmetric.trace() / 3. * Eigen::Matrix3d::Identity();
+  }
+
+
+  Eigen::Matrix3d
+  viscous_stress(const SubdivisionSurface &surface, const ControlPoints &x, const ControlPoints &velocity, const double viscosity_ratio)
+  {
+    const ControlPoints   U = surface.S() * velocity, n = normals(surface, x);
+    const Eigen::Matrix3d moment    = U.transpose() * area_weights(surface, x).asDiagonal() * n;
+    const Eigen::Matrix3d symmetric = (viscosity_ratio - 1.) * (moment + moment.transpose());
     return symmetric - symmetric.trace() / 3. * Eigen::Matrix3d::Identity();
   }
 

@@ -226,6 +226,8 @@ namespace tanktread
     o.delta             = phase_->delta();
     o.theta_continuous  = phase_->theta();
     o.stress            = particle_stress(state_.x, state_.force); // with one viscosity the forces are all of it
+    if (parameters_.scene.viscosity_ratio != 1.)
+      o.stress += viscous_stress(surface_, state_.x, velocity, parameters_.scene.viscosity_ratio);
     o.rheology          = rheology(o.stress, o.volume, flow_.shear_rate);
     o.time              = time_;
     o.step              = step.length;

@@ -224,7 +224,7 @@ namespace tanktread
     const Timings::Scope           scope(timings_, "Linear solver");
     const unsigned int             n_points = r.x.rows();
     const MonolithicOperator       matrix(fluid_->stokes(), shell, &timings_, shell.tau() > 0. ? inertia_.get() : nullptr);
-    const MonolithicPreconditioner preconditioner(fluid_->preconditioner(), shell, volume_ / viscosity_ratio_, &timings_);
+    const MonolithicPreconditioner preconditioner(fluid_->preconditioner(), shell, volume_ / (0.5 * (1. + viscosity_ratio_)), &timings_);
 
     const ControlPoints dx0 = shell.displacement_of_residual(r.x, r.volume);
     FluidBlockVector    rhs = monolithic_vector(fluid_->space(), n_points), solution(rhs);
@@ -234,9 +234,10 @@ namespace tanktread
       coupling_.spread_with_motion(ControlPoints::Zero(n_points, 3), dx0, shell.density(), rhs);
     set_shell_unknowns(rhs, {r.flux + shell.flux(ControlPoints::Zero(n_points, 3), dx0), shell.damped(-r.force - shell.stiffness_times(dx0))});
 
-    // With an exact tangent that is indefinite the solver gets nowhere; a definite one needs a few dozen iterations.
+    // With an exact tangent that is indefinite the solver gets nowhere; a definite one needs a few dozen iterations, more with viscosities that differ much.
+    const double       contrast = std::sqrt(std::max(viscosity_ratio_, 1. / viscosity_ratio_));
     const unsigned int max_iterations =
-      tangent_ == Tangent::exact && shell.tau() > 0. ? std::min(100u, parameters_.max_linear_iterations) : parameters_.max_linear_iterations;
+      contrast * (tangent_ == Tangent::exact && shell.tau() > 0. ? std::min(100u, parameters_.max_linear_iterations) : parameters_.max_linear_iterations);
     const LinearReport report = solve_fgmres(matrix, preconditioner, solution, rhs, tolerance, max_iterations, krylov_basis_);
 
     fluid_->space().reinit(increment.fluid);
@@ -312,7 +313,7 @@ namespace tanktread
   {
     // Positions within a small part of a cell, which shrinks with the solver's tolerance, are as good as any. A node of the fluid that changes sides makes the residual jump, and now and
     // then shell and node would chase each other for ever: then a larger part has to do.
-    constexpr unsigned int patience = 8, max_sweeps = 6;
+    constexpr unsigned int patience = 8, max_sweeps = 3;
     const double           tolerance = n_moves < patience ? std::min(0.002 * finest_cell(), 100. * parameters_.newton_tolerance) : 0.02 * finest_cell();
     const bool             moves     = trial_points() == Points::stay && coupling_.distance(state.x) > tolerance;
     const bool             mixes     = viscosity_ratio_ != 1. && (state.x - viscosity_x_).rowwise().norm().maxCoeff() > tolerance;

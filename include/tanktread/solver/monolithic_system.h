@@ -66,12 +66,12 @@ namespace tanktread
 
   /**
    * Block-triangular: the shell's forces (their row is already close to the identity) and the pressures first, with the mass matrix for the Schur complement and the
-   * capsule's volume, over its viscosity, for that of the pressure jump; then one multigrid V-cycle for the velocities.
+   * capsule's volume, over the mean viscosity, for that of the pressure jump; then one multigrid V-cycle for the velocities.
    */
   class MonolithicPreconditioner
   {
   public:
-    /** @param volume of the capsule over its viscosity. @param timings where to add what the parts take, or null. */
+    /** @param volume of the capsule over the mean of the viscosities inside and outside. @param timings where to add what the parts take, or null. */
     MonolithicPreconditioner(const StokesPreconditioner &stokes, const LinearisedShell &shell, double volume, Timings *timings = nullptr);
 
     void
