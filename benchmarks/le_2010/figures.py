@@ -12,7 +12,7 @@ import runs  # noqa: F401  (puts plot_run on the path)
 import plot_run
 import snapshots
 
-COLORS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7"]
+COLORS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00"]
 LABELS = {"D_xz": r"$D_{xz}$", "theta": r"$\theta/\pi$", "theta_continuous": r"$\theta/\pi$, continuous", "delta": r"$\delta/\pi$", "area": r"area / initial area"}
 GAMMA_T = r"$\dot\gamma t$"
 
@@ -60,6 +60,16 @@ def split_by_G(results):
     return [(f"G = {G:g}", [result for result in results if result.G == G]) for G in sorted({result.G for result in results})]
 
 
+def relaxation_style(name):
+    """Label and style of a run's curve."""
+    if "moment_only" in name:
+        return "moment-only", {"linewidth": 1.6, "linestyle": ":"}
+    if "_step" not in name:
+        return "steps by local error", {"linewidth": 1.6}
+    step = name.split("_step")[1]
+    return f"steps of {step}, backward Euler", {"marker": "o", "markersize": 3 if step == "0.05" else 5, "linewidth": 0.6}
+
+
 def draw_relaxation(results):
     """Contours of the finest runs above; semi-axes of all runs below."""
     shapes = [("ellipsoid 2:2:1", [r for r in results if "ellipsoid" in r.name]), ("biconcave disk", [r for r in results if "biconcave" in r.name])]
@@ -74,14 +84,13 @@ def draw_relaxation(results):
                     axes[1, column].plot(reference[0]["time"], reference[0][name], "--", color="#222222", linewidth=0.9, zorder=5)
         axes[0, column].set(aspect="equal", xlabel="$x/a$", ylabel="$z/a$")
         axes[0, column].set_title(title, fontsize=9, loc="left")
+        axes[0, column].set_ylim(-1.15, 1.45)
         if group[0].contours:
-            axes[0, column].legend(fontsize=8)
+            axes[0, column].legend(fontsize=8, ncol=3, loc="upper center")
         for result, color in zip(group, COLORS):
             if not result.series:
                 continue
-            step = result.name.split("_step")[1] if "_step" in result.name else None
-            style = {"linewidth": 1.6} if step is None else {"marker": "o", "markersize": 3 if step == "0.05" else 5, "linewidth": 0.6}
-            label = "steps by local error" if step is None else f"steps of {step}, backward Euler"
+            label, style = relaxation_style(result.name)
             for name in ("L", "B"):
                 axes[1, column].plot(result.series["time"], result.series[name], color=color, label=label if name == "L" else None, **style)
         axes[1, column].set(xlabel=r"$t\,\kappa_B/(\mu a^3)$", ylabel="semi-axes $L/a$, $B/a$", xlim=(-0.1, 5.2))

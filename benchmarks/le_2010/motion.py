@@ -40,7 +40,7 @@ def summary(times, D, theta, alpha):
     theta, alpha = np.unwrap(theta, period=1), np.unwrap(alpha, period=2)
     delta = alpha - theta
     turned = np.flatnonzero(np.abs(alpha - alpha[0]) >= 1)
-    result = {"mode": "undetermined", "D_minimum": math.nan, "D_maximum": math.nan, "D_period": math.nan, "theta_minimum": math.nan, "theta_maximum": math.nan}
+    result = {"mode": "undetermined", "D_maxima": [], "D_minimum": math.nan, "D_maximum": math.nan, "D_period": math.nan, "theta_minimum": math.nan, "theta_maximum": math.nan}
     if not len(turned):
         return result
     after = slice(turned[0], None)
@@ -50,6 +50,7 @@ def summary(times, D, theta, alpha):
     maxima, minima = extrema(times[after], D[after])
     if minima:
         result["D_minimum"] = minima[-1][1]
+    result["D_maxima"] = [value for _, value in maxima]
     if maxima:
         result["D_maximum"] = maxima[-1][1]
     if len(maxima) > 1:

@@ -7,6 +7,7 @@ import pathlib
 
 import numpy as np
 
+import motion
 import runs
 import statements
 
@@ -32,9 +33,11 @@ def show(value, digits=5):
 
 
 def difference(value, reference):
-    """"value (+0.12 %)", or the value alone."""
+    """"value (+0.12 %)", for small numbers "value (+0.0012)", or the value alone."""
     if math.isnan(value) or math.isnan(reference):
         return show(value)
+    if abs(reference) < 0.01:
+        return f"{value:.5f} ({value - reference:+.5f})"
     return f"{value:.5g} ({100 * (value / reference - 1):+.2f} %)"
 
 
@@ -103,6 +106,22 @@ def motion_table(results):
     return table(head, rows) if rows else ""
 
 
+def evenness(results):
+    """How far the maxima of D lie apart, in our runs and in the reference: how periodic either is."""
+    lines = []
+    for result in results:
+        reference = result.reference() if result.series else None
+        if not reference or not reference[1]:
+            continue
+        ours = motion.summary(result.series["time"], result.series["D_xz"], result.series["theta"], result.series["alpha"])
+        spread = [f"{min(found['D_maxima']):.5f} to {max(found['D_maxima']):.5f}" for found in (ours, reference[1]) if len(found["D_maxima"]) > 1]
+        if len(spread) == 2:
+            lines.append(f"{short(result)}: maxima of D from {spread[0]}, of the reference from {spread[1]}")
+    text = "Without bending the shell carries compressive tensions and wants to wrinkle; how finely it can depends on its mesh, and the reference is uneven too. "
+    return text + "; ".join(lines) + ".\n" if lines else ""
+
+
+NOTES = {"fig07": evenness}
 TABLES = {"fig01": relaxation_table, "fig02": None, "fig03": steady_table, "fig04": steady_table, "fig10": None, "fig12": None}
 
 
@@ -116,6 +135,8 @@ def section(figure, results, folder):
     make = TABLES.get(figure, motion_table)
     if make:
         text.append(make(wanted))
+    if figure in NOTES:
+        text.append(NOTES[figure](wanted))
     missing = not_done(wanted)
     if missing:
         text.append(table(["run without a result", "why"], missing))
