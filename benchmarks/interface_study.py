@@ -141,7 +141,7 @@ PLAIN, ENRICHED, REFERENCE = "#D55E00", "#0072B2", "#222222"
 
 
 def draw_errors(args, rows, key, label, file):
-    figure, axes = plt.subplots(2, 3, figsize=(9, 5.6), sharex=key == "h", sharey=True)
+    figure, axes = plt.subplots(2, 3, figsize=(9, 5.6), sharex=True, sharey=True)
     for axis, (scene, title) in zip(axes.flat, SCENES.items()):
         for interface, colour, marker in (("plain", PLAIN, "s"), ("enriched", ENRICHED, "o")):
             data = select(rows, scene, interface)
@@ -157,7 +157,10 @@ def draw_errors(args, rows, key, label, file):
         axis.yaxis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{100 * value:g} %"))
         if key == "h":
             axis.set_xticks([10 / n for n in (32, 64, 128)], ["10a/32", "10a/64", "10a/128"])
-            axis.minorticks_off()
+        else:
+            axis.xaxis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:g}"))
+            axis.xaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
+        axis.minorticks_off()
     axes[0, 0].legend(fontsize=8)
     figure.supxlabel(label, fontsize=10)
     figure.supylabel("error of the surface velocity", fontsize=10)
@@ -174,7 +177,7 @@ def draw_transients(args):
             axis.set_ylabel(label)
         for step, (times, D, theta, wanted_D, _) in transients(args, case):
             style = {"color": "#009E73", "linestyle": "-"} if step.startswith("0,") else {"color": ENRICHED, "linestyle": "-" if step.startswith(f"{case.steps[1]:g}") else "--"}
-            label = "extrapolated to Δt = 0" if step.startswith("0,") else f"Δt = {step}/γ̇"
+            label = "extrapolated to Δt = 0" if step.startswith("0,") else f"Δt = {step.split(',')[0]}/γ̇"
             for axis, values in zip(axes[:, column], (D, theta, 100 * (D - wanted_D) / wanted["D"].max())):
                 axis.plot(times, values, linewidth=1.2, label=label, **style)
         axes[2, column].axhspan(-0.5, 0.5, color="#eeeeee")
@@ -198,6 +201,15 @@ def percent(value):
     return "–" if not np.isfinite(value) else f"{100 * value:.3g} %" if abs(value) < 0.1 else f"{100 * value:.1f} %"
 
 
+def number(value):
+    return "–" if not np.isfinite(value) else f"{value:.2f}"
+
+
+def padded(values):
+    """With what is missing of the three meshes."""
+    return np.append(values, np.full(max(0, 3 - len(values)), np.nan))
+
+
 def table(head, rows):
     print("| " + " | ".join(head) + " |\n|" + "---|" * len(head))
     for row in rows:
@@ -212,12 +224,12 @@ def print_flows(rows, shell_rows):
             data = select(rows, scene, interface)
             if data is None:
                 continue
-            errors, cells = data["error"], data["cells"]
+            errors, cells, power = (padded(data[key]) for key in ("error", "cells", "power_error"))
             orders = np.log(errors[:-1] / errors[1:]) / np.log(cells[1:] / cells[:-1])
-            total = np.log(errors[0] / errors[-1]) / np.log(cells[-1] / cells[0]) if len(cells) > 1 else np.nan
+            total = np.log(errors[0] / errors[-1]) / np.log(cells[-1] / cells[0])
             shell = select(shell_rows, scene, interface) if shell_rows else None
             finer = [] if shell is None else [percent(value) for value in shell["error"]]
-            body.append([title, interface, *map(percent, errors), *(f"{order:.2f}" for order in orders), f"{total:.2f}", *map(percent, data["power_error"]),
+            body.append([title, interface, *map(percent, errors), *map(number, orders), number(total), *map(percent, power),
                          percent(data["reference_error"][-1]) if data["reference_error"][-1] > 0 else "exact", ", ".join(finer) or "–"])
     table(["", "interface", "10a/32", "10a/64", "10a/128", "order", "order", "overall", "power 10a/32", "10a/64", "10a/128", "finest mesh against reference",
            "control mesh finer by one level, 10a/32, 10a/64"], body)
@@ -225,7 +237,7 @@ def print_flows(rows, shell_rows):
     for scene, title in SCENES.items():
         data = select(rows, scene, "shell")
         if data is not None:
-            body.append([title, *(percent(value) for value in data["error"])])
+            body.append([title, *map(percent, padded(data["error"])[:2])])
     if body:
         table(["control mesh alone", "162 points", "642 points"], body)
 
