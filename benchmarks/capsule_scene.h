@@ -94,6 +94,12 @@ namespace tanktread
         start_flow();
     }
 
+    const State &
+    state() const
+    {
+      return state_;
+    }
+
     NewtonReport
     step()
     {

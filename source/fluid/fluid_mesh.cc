@@ -27,6 +27,7 @@ namespace tanktread
     : communicator_(communicator)
     , side_(side)
     , band_width_(parameters.band_width)
+    , grading_(parameters.grading)
     , n_rung_0_(std::max(2, static_cast<int>(std::lround(side / parameters.coarsest_cell))))
     , triangulation_(communicator, Triangulation::limit_level_difference_at_vertices)
   {
@@ -86,19 +87,23 @@ namespace tanktread
   }
 
 
+  void
+  FluidMesh::insert_with_ancestors(CellKey cell, KeySet &cells)
+  {
+    while (cells.insert(cell.packed()).second && cell.level > 0)
+      {
+        --cell.level;
+        for (int &i : cell.position)
+          i >>= 1;
+      }
+  }
+
+
   FluidMesh::KeySet
   FluidMesh::wanted_cells(const std::vector<dealii::Point<3>> &points, const double band) const
   {
-    const int  n = n_rung_0_ << finest_level_;
-    KeySet     result;
-    const auto insert_with_ancestors = [&](CellKey cell) {
-      while (result.insert(cell.packed()).second && cell.level > 0)
-        {
-          --cell.level;
-          for (int &i : cell.position)
-            i >>= 1;
-        }
-    };
+    const int n = n_rung_0_ << finest_level_;
+    KeySet    result;
     for (const auto &point : points)
       {
         place(point, finest_level_); // throws if the point is outside
@@ -112,19 +117,42 @@ namespace tanktread
         for (int z = std::max(0, low[2]); z <= std::min(n - 1, high[2]); ++z)
           for (int y = low[1]; y <= high[1]; ++y)
             for (int x = low[0]; x <= high[0]; ++x)
-              insert_with_ancestors({finest_level_, {((x % n) + n) % n, ((y % n) + n) % n, z}});
+              insert_with_ancestors({finest_level_, {((x % n) + n) % n, ((y % n) + n) % n, z}}, result);
       }
     return result;
+  }
+
+
+  void
+  FluidMesh::add_grading(const std::vector<dealii::Point<3>> &points, KeySet &wanted) const
+  {
+    // Parents of all cells that are as close as that to a cell with points: the same for many points.
+    KeySet done;
+    for (const auto &point : points)
+      for (unsigned int level = finest_level_; level-- > std::max(1u, coarsest_level_ + 1);)
+        {
+          const CellKey cell = place(point, level).key;
+          if (!done.insert(cell.packed()).second)
+            break;
+          const int  n_parents = n_rung_0_ << (level - 1);
+          const auto parent    = [&](const unsigned int d, const int shift) { return (cell.position[d] + shift) >> 1; };
+          for (int z = std::max(0, parent(2, -grading_)); z <= std::min(n_parents - 1, parent(2, grading_)); ++z)
+            for (int y = parent(1, -grading_); y <= parent(1, grading_); ++y)
+              for (int x = parent(0, -grading_); x <= parent(0, grading_); ++x)
+                insert_with_ancestors({level - 1, {((x % n_parents) + n_parents) % n_parents, ((y % n_parents) + n_parents) % n_parents, z}}, wanted);
+        }
   }
 
 
   bool
   FluidMesh::aim_at(const std::vector<dealii::Point<3>> &points)
   {
-    KeySet     wanted = wanted_cells(points, band_width_);
-    const bool other  = !aimed_ || wanted != wanted_;
-    aimed_            = true;
-    wanted_           = std::move(wanted);
+    KeySet wanted = wanted_cells(points, band_width_);
+    if (grading_ > 0)
+      add_grading(points, wanted);
+    const bool other = !aimed_ || wanted != wanted_;
+    aimed_           = true;
+    wanted_          = std::move(wanted);
     return other;
   }
 

@@ -15,6 +15,7 @@ namespace tanktread
   FluidMeshParameters::add_parameters(dealii::ParameterHandler &prm)
   {
     using dealii::Patterns::Double;
+    using dealii::Patterns::Integer;
     prm.enter_subsection("Fluid mesh");
     prm.add_parameter("Finest cell",
                       finest_cell,
@@ -22,6 +23,11 @@ namespace tanktread
                       Double(1e-4, 10.));
     prm.add_parameter("Coarsest cell", coarsest_cell, "Side of the cells away from the shell, in a; adjusted to divide the box.", Double(1e-4, 100.));
     prm.add_parameter("Band width", band_width, "Distance from the shell within which cells are finest ones, in finest cells.", Double(1., 20.));
+    prm.add_parameter(
+      "Grading",
+      grading,
+      "Distance from the shell within which cells of any larger size are not larger, in cells of that size; 0: they grow as fast as 2:1 balance lets them.",
+      Integer(0, 16));
     add_enum_parameter(prm,
                        "Pressure space",
                        pressure_space,

@@ -20,6 +20,7 @@ def arguments():
     parser.add_argument("--output", required=True, help="folder for the folders of the runs")
     parser.add_argument("--ranks", required=True, help="numbers separated by commas")
     parser.add_argument("--tolerance", default="1e-9", help="relative or absolute")
+    parser.add_argument("--without", default="", help="further columns that are not compared, separated by commas")
     parser.add_argument("--set", action="append", default=[], metavar="SECTION/PARAMETER=VALUE")
     return parser.parse_args()
 
@@ -28,7 +29,7 @@ def compared_file(args, ranks):
     folder = pathlib.Path(args.output) / f"{ranks}_ranks"
     run(argparse.Namespace(program=args.program, prm=args.prm, ranks=ranks, set=args.set, output=str(folder)))
     with open(folder / "history.csv", newline="") as file:
-        names = [name for name in next(csv.reader(file)) if name not in NEVER]
+        names = [name for name in next(csv.reader(file)) if name not in NEVER and name not in args.without.split(",")]
     target = folder / "compared.csv"
     select_columns(folder / "history.csv", names, target)
     return target

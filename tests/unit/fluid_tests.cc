@@ -525,6 +525,44 @@ TEST(FluidMesh, BandIsAsWideAsAskedFor)
 }
 
 
+TEST(FluidMesh, GradingWidensTheBandOfEachSize)
+{
+  const std::vector<Point>  points     = {Point(0.013, -0.017, 0.011), Point(-0.99, 0.98, 0.3)};
+  FluidMeshParameters       parameters = Problem::parameters(0.5, 0.03125);
+  std::vector<unsigned int> n_cells;
+  for (const unsigned int grading : {0, 1, 3})
+    {
+      parameters.grading = grading;
+      FluidMesh mesh(MPI_COMM_WORLD, side, parameters);
+      mesh.adapt(points);
+      unsigned int n_too_coarse = 0;
+      for (const auto &cell : mesh.triangulation().active_cell_iterators())
+        if (const unsigned int level = cell->level() + 1; cell->is_locally_owned() && level < mesh.finest_level())
+          for (const Point &x : points)
+            {
+              // Gap between this cell and the cube half as large around the point.
+              const auto   place = mesh.place(x, level);
+              const double h     = mesh.cell_size(level);
+              double       gap   = 0.;
+              for (unsigned int d = 0; d < 3; ++d)
+                {
+                  const double difference = cell->center()[d] - (-0.5 * side + h * (place.key.position[d] + 0.5));
+                  gap                     = std::max(gap, std::abs(d < 2 ? std::remainder(difference, side) : difference) - 1.5 * h);
+                }
+              n_too_coarse += gap < (grading > 0 ? grading : 3) * h - 1e-9;
+            }
+      if (grading > 0)
+        EXPECT_EQ(dealii::Utilities::MPI::sum(n_too_coarse, MPI_COMM_WORLD), 0u);
+      else
+        EXPECT_GT(dealii::Utilities::MPI::sum(n_too_coarse, MPI_COMM_WORLD), 0u);
+      n_cells.push_back(mesh.triangulation().n_global_active_cells());
+      EXPECT_TRUE(mesh.covers(points));
+      EXPECT_FALSE(mesh.adapt(points));
+    }
+  EXPECT_LT(n_cells[1], n_cells[2]);
+}
+
+
 int
 main(int argc, char **argv)
 {

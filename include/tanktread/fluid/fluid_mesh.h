@@ -43,7 +43,7 @@ namespace tanktread
 
     /**
      * Chooses the mesh to climb to: the coarsest one, 2:1 balanced, in which every cell closer than band_width h (in each coordinate) to one of `points` has the
-     * finest size h. It depends on the points alone, not on the mesh before. Returns false if that is the mesh chosen last.
+     * finest size h, and every cell closer than `grading` cells of size h_l > h to the cells of that size that contain points is not larger than h_l. It depends on the points alone, not on the mesh before. Returns false if that is the mesh chosen last.
      *
      * @param points on the shell, the same on all ranks, anywhere in x and y (wrapped periodically). Throws NumericalError if one is not between the walls.
      */
@@ -137,10 +137,18 @@ namespace tanktread
     KeySet
     wanted_cells(const std::vector<dealii::Point<3>> &points, double band) const;
 
+    /** Inserts the cells that have to be divided for the sake of the grading. */
+    void
+    add_grading(const std::vector<dealii::Point<3>> &points, KeySet &wanted) const;
+
+    /** Inserts a cell and all its ancestors. */
+    static void
+    insert_with_ancestors(CellKey cell, KeySet &cells);
+
     MPI_Comm      communicator_;
     double        side_;
     double        band_width_;
-    int           n_rung_0_;
+    int           grading_, n_rung_0_;
     unsigned int  coarsest_level_ = 0, finest_level_, rung_ = 0;
     bool          aimed_ = false; // has a mesh been chosen?
     KeySet        wanted_;        // of the mesh chosen last

@@ -20,9 +20,10 @@ namespace tanktread
   /** Section "Fluid mesh". Lengths in a. */
   struct FluidMeshParameters
   {
-    double finest_cell   = 0.15625;
-    double coarsest_cell = 2.5;
-    double band_width    = 1.5;
+    double       finest_cell   = 0.15625;
+    double       coarsest_cell = 2.5;
+    double       band_width    = 1.5;
+    unsigned int grading       = 0; // cells of each larger size between the shell and where the next size may begin
 
     PressureSpace pressure_space = PressureSpace::q1;
 
