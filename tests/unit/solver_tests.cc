@@ -322,13 +322,13 @@ namespace
     scene.solver.solve_flow(scene.state);
     FluidVector uhat = scene.state.fluid.block(velocity_block);
     uhat *= 0.7;
-    NewtonSolver solver(scene.parameters, scene.shell, scene.surface, scene.coupling, scene.volume, {1.}, scene.timings, reynolds_number);
+    NewtonSolver solver(scene.parameters, scene.shell, scene.surface, scene.coupling, scene.volume, {1.}, scene.timings, 1., reynolds_number);
     solver.attach(scene.fluid);
     EXPECT_TRUE(solver.solve(scene.state, x0, 0.05, &uhat).converged);
 
     SolverParameters one      = scene.parameters;
     one.max_newton_iterations = 1;
-    NewtonSolver single(one, scene.shell, scene.surface, scene.coupling, scene.volume, {1.}, scene.timings, reynolds_number);
+    NewtonSolver single(one, scene.shell, scene.surface, scene.coupling, scene.volume, {1.}, scene.timings, 1., reynolds_number);
     single.attach(scene.fluid);
     std::vector<double> left;
     for (const double epsilon : {4e-3, 1e-3})
