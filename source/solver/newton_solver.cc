@@ -309,11 +309,11 @@ namespace tanktread
 
 
   bool
-  NewtonSolver::follow_shell(State &state, unsigned int &n_moves, unsigned int &n_sweeps)
+  NewtonSolver::follow_shell(State &state, unsigned int &n_moves, const bool with_jumps)
   {
     // Positions within a small part of a cell, which shrinks with the solver's tolerance, are as good as any. A node of the fluid that changes sides makes the residual jump, and now and
     // then shell and node would chase each other for ever: then a larger part has to do.
-    constexpr unsigned int patience = 8, max_sweeps = 3;
+    constexpr unsigned int patience  = 8;
     const double           tolerance = n_moves < patience ? std::min(0.002 * finest_cell(), 100. * parameters_.newton_tolerance) : 0.02 * finest_cell();
     const bool             moves     = trial_points() == Points::stay && coupling_.distance(state.x) > tolerance;
     const bool             mixes     = viscosity_ratio_ != 1. && (state.x - viscosity_x_).rowwise().norm().maxCoeff() > tolerance;
@@ -322,13 +322,9 @@ namespace tanktread
     if (mixes)
       set_viscosity(state.x);
     n_moves += moves || mixes;
-    // The jumps' viscous part is a contraction that need not end below the solver's tolerance.
-    const bool sweeps = viscosity_ratio_ != 1. && trial_points() == Points::stay && n_sweeps < max_sweeps;
+    const bool sweeps = with_jumps && viscosity_ratio_ != 1. && trial_points() == Points::stay;
     if (sweeps)
-      {
-        coupling_.update_viscous_forces(state.fluid, state.force);
-        ++n_sweeps;
-      }
+      coupling_.update_viscous_forces(state.fluid, state.force);
     return moves || mixes || sweeps;
   }
 
@@ -364,7 +360,8 @@ namespace tanktread
         Residual     r        = residual(trial, xhat, tau, viscosity_ratio_ == 1. ? Points::follow : Points::stay);
         double       length   = dealii::Utilities::MPI::broadcast(fluid_->mesh().communicator(), tau * speed(r, tau), 0); // about that of the next displacement
         bool         cautious = false;
-        unsigned int n_moves = 1, n_sweeps = 0;
+        unsigned int n_moves  = 1;
+        bool         settled  = false; // the viscous part of the jumps: what a further sweep would change is small, or too many of them have been done already
         for (bool solved = false; !solved;)
           {
             if (report.newton_iterations == parameters_.max_newton_iterations)
@@ -397,10 +394,12 @@ namespace tanktread
                   throw NumericalError(failure);
                 cautious = tangent_ == Tangent::positive;
               }
-            if (follow_shell(trial, n_moves, n_sweeps))
+            if (follow_shell(trial, n_moves, !settled))
               {
                 r                       = residual(trial, xhat, tau, trial_points());
                 report.residuals.back() = norm(r, tau);
+                settled =
+                  settled || report.residuals.back() <= 10. * parameters_.newton_tolerance || 2 * report.newton_iterations >= parameters_.max_newton_iterations;
               }
             solved = is_solved(r, report.residuals.back());
             length = tau * report.residuals.back();

@@ -53,7 +53,7 @@ namespace tanktread
    * nodes, which changes the vector much and the flow little.)
    *
    * With another viscosity inside, A is the strain form with it, and the undisturbed flow has the load -2 ((mu - 1) eps(u_inf), eps(v)). The viscosity stays while the linear system is solved and during line search; after an
-   * iteration it follows the shell as the points of the enriched interface do. So does what the viscosities contribute to the jumps of that interface (JumpEnrichment), which after some sweeps stays for the rest of the step.
+   * iteration it follows the shell as the points of the enriched interface do. So does what the viscosities contribute to the jumps of that interface (JumpEnrichment), which stays for the rest of the step when the residual after a sweep is below ten times the tolerance, or half of the iterations allowed are over.
    */
   class NewtonSolver
   {
@@ -150,11 +150,11 @@ namespace tanktread
     Points
     trial_points() const;
     /**
-     * With the enriched interface or another viscosity inside: moves points and viscosity after the shell unless they are close enough, so that no solution is accepted with them elsewhere, and makes the viscous part of the
-     * jumps that of the present flow. Returns true if anything has changed.
+     * With the enriched interface or another viscosity inside: moves points and viscosity after the shell unless they are close enough, so that no solution is accepted with them elsewhere, and, `with_jumps`, makes the viscous part of
+     * the jumps that of the present flow. Returns true if anything has changed.
      */
     bool
-    follow_shell(State &state, unsigned int &n_moves, unsigned int &n_sweeps);
+    follow_shell(State &state, unsigned int &n_moves, bool with_jumps);
     /** Viscosity of a shell at x, and the load of the undisturbed flow with it. */
     void
     set_viscosity(const ControlPoints &x);
