@@ -222,10 +222,10 @@ namespace tanktread
     if (!phase_)
       phase_ = std::make_unique<PhaseAngles>(shape_.topology, state_.x, o.ellipsoid, o.theta_over_pi);
     phase_->update(state_.x, o.ellipsoid, o.theta_over_pi);
-    o.alpha             = phase_->alpha();
-    o.delta             = phase_->delta();
-    o.theta_continuous  = phase_->theta();
-    o.stress            = particle_stress(state_.x, state_.force); // with one viscosity the forces are all of it
+    o.alpha            = phase_->alpha();
+    o.delta            = phase_->delta();
+    o.theta_continuous = phase_->theta();
+    o.stress           = particle_stress(state_.x, state_.force); // with one viscosity the forces are all of it
     if (parameters_.scene.viscosity_ratio != 1.)
       o.stress += viscous_stress(surface_, state_.x, velocity, parameters_.scene.viscosity_ratio);
     o.rheology          = rheology(o.stress, o.volume, flow_.shear_rate);

@@ -38,7 +38,10 @@ namespace tanktread
                       max_newton_iterations,
                       "A time step that needs more is rejected and tried with half its length.",
                       Integer(1, 1000));
-    prm.add_parameter("Maximal linear iterations", max_linear_iterations, "A linear solve that needs more, times the root of the viscosity ratio or of its inverse, has failed.", Integer(1, 100000));
+    prm.add_parameter("Maximal linear iterations",
+                      max_linear_iterations,
+                      "A linear solve that needs more, times the root of the viscosity ratio or of its inverse, has failed.",
+                      Integer(1, 100000));
     prm.leave_subsection();
   }
 } // namespace tanktread

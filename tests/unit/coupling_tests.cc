@@ -198,13 +198,3 @@ TEST(Coupling, QuadratureFollowsTheFluidCell)
         last = rule.weights.size();
       }
 }
-
-
-int
-main(int argc, char **argv)
-{
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  ::testing::InitGoogleTest(&argc, argv);
-  const int failed = RUN_ALL_TESTS();
-  return dealii::Utilities::MPI::max(failed, MPI_COMM_WORLD);
-}

@@ -438,13 +438,3 @@ TEST(NavierStokes, OrdersInTime)
       EXPECT_NEAR(order, second_order ? 2. : 1., 0.15);
     }
 }
-
-
-int
-main(int argc, char **argv)
-{
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  testing::InitGoogleTest(&argc, argv);
-  const int failed = RUN_ALL_TESTS();
-  return dealii::Utilities::MPI::max(failed, MPI_COMM_WORLD);
-}

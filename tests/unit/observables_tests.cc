@@ -255,13 +255,3 @@ TEST(StepHistory, PositionsBetweenLevelsAreThoseOfTheParabola)
   one.add(0.7, x(0.7));
   EXPECT_LT((one.at(0.6) - 0.5 * (x(0.5) + x(0.7))).norm(), 1e-14);
 }
-
-
-int
-main(int argc, char **argv)
-{
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  ::testing::InitGoogleTest(&argc, argv);
-  const int failed = RUN_ALL_TESTS();
-  return dealii::Utilities::MPI::max(failed, MPI_COMM_WORLD);
-}

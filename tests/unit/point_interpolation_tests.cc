@@ -348,13 +348,3 @@ TEST(PointInterpolation, SameOnAnyNumberOfRanks)
       EXPECT_NEAR(load * v, whole_load * w, 1e-12 * whole_load.l2_norm() * w.l2_norm());
     }
 }
-
-
-int
-main(int argc, char **argv)
-{
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  ::testing::InitGoogleTest(&argc, argv);
-  const int failed = RUN_ALL_TESTS();
-  return dealii::Utilities::MPI::max(failed, MPI_COMM_WORLD);
-}

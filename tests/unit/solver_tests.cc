@@ -475,13 +475,3 @@ TEST(BackwardEuler, EnergyFallsWithoutFlowWithTheEnrichedInterface)
   for (const double dt : {0.005, 0.05, 0.5, 5.})
     expect_falling_energy(dt, Interface::enriched);
 }
-
-
-int
-main(int argc, char **argv)
-{
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  ::testing::InitGoogleTest(&argc, argv);
-  const int failed = RUN_ALL_TESTS();
-  return dealii::Utilities::MPI::max(failed, MPI_COMM_WORLD);
-}

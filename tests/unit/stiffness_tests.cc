@@ -248,13 +248,3 @@ TEST(Iterations, WrinklingMembrane)
   for (const double tau : {0.05, 0.5})
     expect_few("compressed membrane", scene, {}, Tangent::exact, {20. * tau, 0.}, tau);
 }
-
-
-int
-main(int argc, char **argv)
-{
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  ::testing::InitGoogleTest(&argc, argv);
-  const int failed = RUN_ALL_TESTS();
-  return dealii::Utilities::MPI::max(failed, MPI_COMM_WORLD);
-}
