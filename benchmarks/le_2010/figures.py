@@ -44,7 +44,7 @@ def draw_curves(axes, results, columns):
     for axis, column in zip(axes, columns):
         axis.set_ylabel(LABELS[column])
     axes[-1].set_xlabel(GAMMA_T)
-    axes[0].legend(fontsize=8)
+    axes[0].legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
 
 
 def time_series(groups, columns):
