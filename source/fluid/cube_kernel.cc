@@ -3,6 +3,8 @@
 
 #include <tanktread/fluid/cube_lanes.h>
 
+#include <initializer_list>
+
 namespace tanktread
 {
   using namespace cube_lanes;
