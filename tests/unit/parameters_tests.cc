@@ -145,9 +145,10 @@ TEST(Parameters, ShapeFromFileNeedsAFile)
 
 TEST(Parameters, ErrorsOfAllSectionsComeTogetherWithTheirLines)
 {
-  const std::string message = error_of({}, "subsection Scene\nset Reynolds number = 2\nend\nsubsection Output\nset Checkpoint interval = 3\nend\n");
-  EXPECT_NE(message.find("x.prm:2: Scene/Reynolds number is 2"), std::string::npos) << message;
-  EXPECT_NE(message.find("x.prm:5: Output/Checkpoint interval is 3"), std::string::npos) << message;
+  const std::string message =
+    error_of({}, "subsection Scene\nset Flow = quiescent\nset Reduced bending modulus = 0\nend\nsubsection Output\nset Checkpoint interval = 3\nend\n");
+  EXPECT_NE(message.find("x.prm:3: Scene/Reduced bending modulus is 0"), std::string::npos) << message;
+  EXPECT_NE(message.find("x.prm:6: Output/Checkpoint interval is 3"), std::string::npos) << message;
 }
 
 TEST(Parameters, MeshFileIsTakenRelativeToTheParameterFile)
