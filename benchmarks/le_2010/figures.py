@@ -52,7 +52,8 @@ def time_series(groups, columns):
     figure, axes = plt.subplots(len(columns), len(groups), figsize=(4.6 * max(1.35, len(groups)), 2.1 * len(columns) + 0.5), sharex="col", squeeze=False)
     for column, (title, results) in enumerate(groups):
         draw_curves(axes[:, column], results, columns)
-        axes[0, column].set_title(title + "   (dashed: boundary integral, unbounded)", fontsize=8, loc="left")
+        dashed = "   (dashed: boundary integral, unbounded)" if any(result.series and result.reference() for result in results) else ""
+        axes[0, column].set_title(title + dashed, fontsize=8, loc="left")
     return figure
 
 
