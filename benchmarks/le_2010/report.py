@@ -156,7 +156,7 @@ differences in brackets are from the boundary-integral solutions of `benchmarks/
 bracket there is no such solution. Motion, periods and frequencies are judged by the rule of `doc/theory.md`, section 8.2.
 
 Choices where the paper leaves one: "inclined at 45°" is read as the long axis of the section at 45° to the flow (`Inclination = 0.25`); oblate and biconcave shells bend about their
-initial curvature, spheres and relaxing shells about a flat one; Skalak's C is 100. In the relaxation scenes the membrane is absent (`Membrane law = none`): with one that is at ease in the initial
+initial curvature, spheres and relaxing shells about a flat one; Skalak's C is 150 in figs. 9 and 10 and 100 in figs. 11 and 12. In the relaxation scenes the membrane is absent (`Membrane law = none`): with one that is at ease in the initial
 shape the capsule would not become a sphere. They bend in the form `variational`: the forces of `moment-only` along the shell (theory, (16a)) pull the material, which no membrane holds, together at the
 rim, until the mesh there is degenerate; the run `ellipsoid_moment_only` shows how far that goes.
 """
