@@ -303,7 +303,7 @@ namespace tanktread
   void
   Coupling::carry_pressure(const ControlPoints &f, VertexSides &sides, FluidBlockVector &fields) const
   {
-    if (interface_ == Interface::plain)
+    if (interface_ == Interface::plain || x_.rows() == 0)
       return;
     ExtendedForces forces;
     extend_whole(f, forces);

@@ -128,16 +128,21 @@ namespace tanktread
   Simulation::refine_around_shell()
   {
     const Timings::Scope                 scope(timings_, "Fluid mesh and multigrid");
-    std::unique_ptr<const FieldTransfer> flows;
+    std::unique_ptr<const FieldTransfer> transfer;
+    std::vector<FluidBlockVector *>      flows;
+    for (State *const level : stepper_.levels(state_))
+      {
+        level->sides.clear(); // of the old mesh's vertices
+        flows.push_back(&level->fluid);
+      }
     if (solver_.has_inertia() && n_steps_ > 0)
-      flows = std::make_unique<FieldTransfer>(fluid_.space(), stepper_.flows(state_));
+      transfer = std::make_unique<FieldTransfer>(fluid_.space(), flows);
     fluid_.adapt(coupling_.points(state_.x));
     solver_.attach(fluid_);
-    if (flows)
-      return flows->interpolate(fluid_.space(), stepper_.flows(state_));
+    if (transfer)
+      return transfer->interpolate(fluid_.space(), flows);
     stepper_.forget_flow();
     fluid_.space().reinit(state_.fluid);
-    state_.sides.clear();
   }
 
 

@@ -30,12 +30,12 @@ namespace tanktread
   }
 
 
-  std::vector<FluidBlockVector *>
-  TimeStepper::flows(State &state)
+  std::vector<State *>
+  TimeStepper::levels(State &state)
   {
-    std::vector<FluidBlockVector *> result = {&state.fluid};
+    std::vector<State *> result = {&state};
     if (previous_state_)
-      result.push_back(&previous_state_->fluid);
+      result.push_back(previous_state_.get());
     return result;
   }
 

@@ -120,8 +120,8 @@ namespace tanktread
     density(const ControlPoints &f) const;
 
     /**
-     * Adds to the pressure of `fields` what it jumps where the shell with nodal forces f has passed a vertex of the mesh since `sides`, which becomes the sides at move(). Nothing if `sides` is empty, and with the plain
-     * interface. Collective.
+     * Adds to the pressure of `fields` what it jumps where the shell with nodal forces f has passed a vertex of the mesh since `sides`, which becomes the sides at move(). Nothing if `sides` is empty, before
+     * the first move() on a mesh, and with the plain interface. Collective.
      */
     void
     carry_pressure(const ControlPoints &f, VertexSides &sides, FluidBlockVector &fields) const;

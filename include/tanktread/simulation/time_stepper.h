@@ -36,11 +36,11 @@ namespace tanktread
     void
     start(double time, const ControlPoints &x);
 
-    /** The flows that the time scheme looks back to where there is inertia: that of `state`, the last level, and the one before, if there is one. To be carried over changes of mesh. */
-    std::vector<FluidBlockVector *>
-    flows(State &state);
+    /** What the time scheme looks back to: `state`, the last level, and the one before, if there is one. Where there is inertia their flows are to be carried over changes of mesh. */
+    std::vector<State *>
+    levels(State &state);
 
-    /** To be called when the fluid's mesh has changed and flows() are not carried over: nothing is extrapolated over that. The positions of the shell stay known to the scheme. */
+    /** To be called when the fluid's mesh has changed and the flows of levels() are not carried over: nothing is extrapolated over that. The positions of the shell stay known to the scheme. */
     void
     forget_flow();
 
