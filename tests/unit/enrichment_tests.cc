@@ -141,26 +141,34 @@ TEST(SignedDistance, ConvergesOnTheSphere)
 }
 
 
+namespace
+{
+  /** R = J^T on velocities and pressures that are not smooth at all, and Q = Q^T. */
+  void
+  expect_adjoint_and_symmetric(const Scene &scene)
+  {
+    const ControlPoints f = scene.coupling.mass() * oracle::waves(scene.state.x, 2.), g = scene.coupling.mass() * oracle::waves(scene.state.x, 3.);
+    FluidBlockVector    load, fields;
+    scene.fluid.space().reinit(load);
+    scene.fluid.space().reinit(fields);
+    scene.coupling.spread(f, load);
+    for (unsigned int b = 0; b < 2; ++b)
+      for (unsigned int i = 0; i < fields.block(b).locally_owned_size(); ++i)
+        fields.block(b).local_element(i) = std::sin(0.37 * i + b);
+    const double of_shell = f.cwiseProduct(scene.coupling.interpolate(fields)).sum(), of_fluid = load * fields;
+    EXPECT_NEAR(of_shell, of_fluid, 1e-10 * std::abs(of_fluid));
+    fields             = 0.;
+    const double f_Q_g = f.cwiseProduct(scene.coupling.interpolate(fields, g)).sum(), g_Q_f = g.cwiseProduct(scene.coupling.interpolate(fields, f)).sum();
+    const double f_Q_f = f.cwiseProduct(scene.coupling.interpolate(fields, f)).sum();
+    EXPECT_NEAR(f_Q_g, g_Q_f, 1e-12 * std::abs(f_Q_f));
+    EXPECT_GT(std::abs(f_Q_f), 1e-6);
+  }
+} // namespace
+
+
 TEST(Enrichment, PowerOfTheShellIsPowerReceivedByTheFluid)
 {
-  Scene               scene(ellipsoid(), 32, Interface::enriched, 10.);
-  const ControlPoints f = scene.coupling.mass() * oracle::waves(scene.state.x, 2.), g = scene.coupling.mass() * oracle::waves(scene.state.x, 3.);
-  FluidBlockVector    load, fields;
-  scene.fluid.space().reinit(load);
-  scene.fluid.space().reinit(fields);
-  scene.coupling.spread(f, load);
-  for (unsigned int b = 0; b < 2; ++b)
-    for (unsigned int i = 0; i < fields.block(b).locally_owned_size(); ++i)
-      fields.block(b).local_element(i) = std::sin(0.37 * i + b);
-  // R = J^T, on velocities and pressures that are not smooth at all.
-  const double of_shell = f.cwiseProduct(scene.coupling.interpolate(fields)).sum(), of_fluid = load * fields;
-  EXPECT_NEAR(of_shell, of_fluid, 1e-10 * std::abs(of_fluid));
-  // Q = Q^T.
-  fields             = 0.;
-  const double f_Q_g = f.cwiseProduct(scene.coupling.interpolate(fields, g)).sum(), g_Q_f = g.cwiseProduct(scene.coupling.interpolate(fields, f)).sum();
-  const double f_Q_f = f.cwiseProduct(scene.coupling.interpolate(fields, f)).sum();
-  EXPECT_NEAR(f_Q_g, g_Q_f, 1e-12 * std::abs(f_Q_f));
-  EXPECT_GT(std::abs(f_Q_f), 1e-6);
+  expect_adjoint_and_symmetric(Scene(ellipsoid(), 32, Interface::enriched, 10.));
 }
 
 
@@ -251,23 +259,7 @@ TEST(ShellViscosity, HasTheVolumeOfTheCapsule)
 TEST(ViscosityContrast, OperatorsAreAdjointAndSymmetric)
 {
   for (const double ratio : {5., 0.2})
-    {
-      Scene               scene(ellipsoid(), 32, Interface::enriched, 10., {0.013, 0.031, -0.022}, {ratio});
-      const ControlPoints f = scene.coupling.mass() * oracle::waves(scene.state.x, 2.), g = scene.coupling.mass() * oracle::waves(scene.state.x, 3.);
-      FluidBlockVector    load, fields;
-      scene.fluid.space().reinit(load);
-      scene.fluid.space().reinit(fields);
-      scene.coupling.spread(f, load);
-      for (unsigned int b = 0; b < 2; ++b)
-        for (unsigned int i = 0; i < fields.block(b).locally_owned_size(); ++i)
-          fields.block(b).local_element(i) = std::sin(0.37 * i + b);
-      const double of_shell = f.cwiseProduct(scene.coupling.interpolate(fields)).sum(), of_fluid = load * fields;
-      EXPECT_NEAR(of_shell, of_fluid, 1e-10 * std::abs(of_fluid));
-      fields             = 0.;
-      const double f_Q_g = f.cwiseProduct(scene.coupling.interpolate(fields, g)).sum(), g_Q_f = g.cwiseProduct(scene.coupling.interpolate(fields, f)).sum();
-      const double f_Q_f = f.cwiseProduct(scene.coupling.interpolate(fields, f)).sum();
-      EXPECT_NEAR(f_Q_g, g_Q_f, 1e-12 * std::abs(f_Q_f));
-    }
+    expect_adjoint_and_symmetric(Scene(ellipsoid(), 32, Interface::enriched, 10., {0.013, 0.031, -0.022}, {ratio}));
 }
 
 
