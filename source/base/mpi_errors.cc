@@ -45,24 +45,6 @@ namespace tanktread
       return {};
     }
 
-    /** True when all ranks of `communicator` call this function within `patience` seconds. */
-    bool
-    all_ranks_arrive(MPI_Comm communicator, const double patience)
-    {
-      using namespace std::chrono;
-      MPI_Request request;
-      MPI_Ibarrier(communicator, &request);
-      const auto start = steady_clock::now();
-      for (int arrived = 0; duration<double>(steady_clock::now() - start).count() < patience;)
-        {
-          MPI_Test(&request, &arrived, MPI_STATUS_IGNORE);
-          if (arrived)
-            return true;
-          std::this_thread::sleep_for(milliseconds(1));
-        }
-      return false;
-    }
-
     void
     print(const Failure &failure, const std::string &who)
     {
@@ -111,27 +93,55 @@ namespace tanktread
       throw_on_all_ranks(communicator, first, failure);
   }
 
+  Meeting::Meeting(MPI_Comm communicator)
+  {
+    MPI_Comm_dup(communicator, &communicator_);
+  }
+
+
+  Meeting::~Meeting()
+  {
+    if (!missed_)
+      MPI_Comm_free(&communicator_);
+  }
+
+
+  bool
+  Meeting::all_come(const double patience) const
+  {
+    using namespace std::chrono;
+    MPI_Request request;
+    MPI_Ibarrier(communicator_, &request);
+    const auto start = steady_clock::now();
+    for (int arrived = 0; duration<double>(steady_clock::now() - start).count() < patience;)
+      {
+        MPI_Test(&request, &arrived, MPI_STATUS_IGNORE);
+        if (arrived)
+          return true;
+        std::this_thread::sleep_for(milliseconds(1));
+      }
+    missed_ = true;
+    return false;
+  }
+
   int
   exit_code_of(MPI_Comm communicator, const std::function<void()> &work, const double patience)
   {
-    // A communicator of its own: the ranks that have not failed may be inside a collective call of the other one.
-    MPI_Comm own;
-    MPI_Comm_dup(communicator, &own);
-    int rank, n_ranks;
-    MPI_Comm_rank(own, &rank);
-    MPI_Comm_size(own, &n_ranks);
+    const Meeting meeting(communicator);
+    int           rank, n_ranks;
+    MPI_Comm_rank(communicator, &rank);
+    MPI_Comm_size(communicator, &n_ranks);
 
     const Failure failure   = failure_of(work);
     const int     exit_code = failure.exit_code == 3 ? 2 : failure.exit_code;
     if (exit_code != 0)
       {
-        const bool together = n_ranks == 1 || all_ranks_arrive(own, patience);
+        const bool together = n_ranks == 1 || meeting.all_come(patience);
         if (!together || rank == 0)
           print(failure, together ? "" : " on rank " + std::to_string(rank));
         if (!together)
           MPI_Abort(communicator, exit_code);
       }
-    MPI_Comm_free(&own);
     return exit_code;
   }
 } // namespace tanktread

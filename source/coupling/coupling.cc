@@ -1,75 +1,25 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Part of Tanktread: interpolation of the fluid's velocity to the shell and spreading of the shell's forces to the fluid, each the other's adjoint.
+// Part of Tanktread: interpolation of the fluid's velocity to the shells and spreading of the shells' forces to the fluid, each the other's adjoint.
 
 #include <deal.II/base/mpi.h>
 
-#include <tanktread/base/vector4.h>
 #include <tanktread/coupling/coupling.h>
 #include <tanktread/surface/surface_geometry.h>
-#include <tanktread/surface/surface_operators.h>
 
-#include <array>
+#include <algorithm>
 #include <limits>
 #include <stdexcept>
-#include <string>
 
 namespace tanktread
 {
-  namespace
-  {
-    /** Fields on the control points, evaluated at points of one face at a time. */
-    template <unsigned int n_fields>
-    class FaceValues
-    {
-    public:
-      /** `memory` for n_fields vectors at each of the control points that a face depends on. */
-      FaceValues(const SubdivisionSurface &surface, const std::array<const ControlPoints *, n_fields> &fields, std::vector<Vector4> &memory)
-        : surface_(surface)
-        , fields_(fields)
-        , memory_(memory)
-      {
-        memory_.resize(n_fields * surface.support_size());
-      }
-
-      void
-      reinit(const unsigned int face)
-      {
-        const int *const support = surface_.support(face);
-        for (unsigned int i = 0; i < surface_.support_size(); ++i)
-          for (unsigned int k = 0; k < n_fields; ++k)
-            memory_[n_fields * i + k] = Vector4(fields_[k]->data() + 3 * support[i]);
-      }
-
-      /** Values at a quadrature point of the face. */
-      std::array<Vector4, n_fields>
-      at(const unsigned int q) const
-      {
-        const double *const           N      = surface_.stencils(q);
-        const Vector4 *const          values = memory_.data();
-        std::array<Vector4, n_fields> result;
-        for (unsigned int i = 0; i < surface_.support_size(); ++i)
-          for (unsigned int k = 0; k < n_fields; ++k)
-            result[k] += N[i] * values[n_fields * i + k];
-        return result;
-      }
-
-    private:
-      const SubdivisionSurface                         &surface_;
-      const std::array<const ControlPoints *, n_fields> fields_;
-      std::vector<Vector4>                             &memory_;
-    };
-  } // namespace
-
-
-  Coupling::Coupling(const SubdivisionSurface &surface, Eigen::VectorXd reference_weights, const Interface interface)
-    : surface_(surface)
+  Coupling::Coupling(const Capsule &capsule, const unsigned int n_capsules, const Interface interface)
+    : capsule_(capsule)
     , interface_(interface)
-    , weights_(std::move(reference_weights))
-    , mass_(mass_matrix(surface, weights_))
-    , mass_inverse_(mass_)
   {
-    if (interface == Interface::enriched && surface.derivatives() != Derivatives::second)
+    if (interface == Interface::enriched && capsule.coupling_surface().derivatives() != Derivatives::second)
       throw std::logic_error("The enriched interface needs second derivatives of the coupling's surface.");
+    for (unsigned int c = 0; c < n_capsules; ++c)
+      transfers_.emplace_back(capsule, c * capsule.coupling_surface().n_points());
   }
 
 
@@ -77,200 +27,193 @@ namespace tanktread
   Coupling::attach(const TaylorHoodSpace &space)
   {
     space_         = &space;
-    communicator_  = space.mesh.communicator();
     interpolation_ = std::make_unique<PointInterpolation>(space);
-    x_.resize(0, 3);
-    if (interface_ == Interface::enriched)
-      enrichment_ = std::make_unique<JumpEnrichment>(space, contrast_);
-    local_faces_.clear();
-  }
-
-
-  void
-  Coupling::set_points(const ControlPoints &x, std::vector<dealii::Point<3>> &points) const
-  {
-    const unsigned int n_q = surface_.n_points_per_face();
-    FaceValues<1>      positions(surface_, {&x}, face_);
-    points.resize(surface_.n_points());
-    for (unsigned int face = 0; face < surface_.n_faces(); ++face)
-      {
-        positions.reinit(face);
-        for (unsigned int q = face * n_q; q < (face + 1) * n_q; ++q)
-          {
-            const auto value = positions.at(q)[0];
-            points[q]        = dealii::Point<3>(value[0], value[1], value[2]);
-          }
-      }
+    jumps_         = std::make_unique<ShellJumps>(space, contrast_, interface_ == Interface::enriched ? n_capsules() : 0);
+    moved_         = false;
   }
 
 
   std::vector<dealii::Point<3>>
-  Coupling::points(const ControlPoints &x) const
+  Coupling::points(const ShellConfigurations &shells) const
   {
     std::vector<dealii::Point<3>> result;
-    set_points(x, result);
+    for (unsigned int c = 0; c < n_capsules(); ++c)
+      transfers_[c].append_points(*shells[c], result);
     return result;
   }
 
 
   void
-  Coupling::move(const ControlPoints &x, const ControlPoints &volume_gradient)
+  Coupling::move(const ShellConfigurations &shells)
   {
-    x_ = x;
-    set_points(x, points_);
+    points_.clear();
+    for (unsigned int c = 0; c < n_capsules(); ++c)
+      transfers_[c].append_points(*shells[c], points_);
+    moved_ = false;
     interpolation_->reinit(points_);
-
-    const auto &local = interpolation_->local_points();
-    local_faces_.clear();
-    for (unsigned int r = 0; r < local.size(); ++r)
+    for (unsigned int c = 0; c < n_capsules(); ++c)
+      transfers_[c].move(shells[c], *interpolation_);
+    if (!jumps_->are_none())
       {
-        const unsigned int face = local[r] / surface_.n_points_per_face();
-        if (local_faces_.empty() || local_faces_.back().face != face)
-          local_faces_.push_back({face, r, r});
-        ++local_faces_.back().end;
+        normal_forces_.resize(3 * interpolation_->local_points().size());
+        for (const ShellTransfer &transfer : transfers_)
+          transfer.set_point_forces(transfer.shell().normal_field(), normal_forces_);
       }
-    if (interface_ == Interface::plain)
-      return;
-    volume_gradient_ = volume_gradient;
-    normal_field_    = density(volume_gradient);
-    set_point_forces(normal_field_, normal_forces_);
-    enrichment_->move(quadratic_patches(surface_, x), area_weights(surface_, x), *interpolation_);
+    jumps_->move(transfers_, *interpolation_);
+    moved_ = true;
+  }
+
+
+  double
+  Coupling::distance(const ShellConfigurations &shells) const
+  {
+    if (!moved_)
+      return std::numeric_limits<double>::infinity();
+    double result = 0.;
+    for (unsigned int c = 0; c < n_capsules(); ++c)
+      if (shells[c] != transfers_[c].shell_pointer())
+        result = std::max(result, (shells[c]->x() - transfers_[c].shell().x()).rowwise().norm().maxCoeff());
+    return result;
   }
 
 
   Viscosity
-  Coupling::viscosity(const ControlPoints &x) const
+  Coupling::viscosity(const ShellConfiguration &shell) const
   {
-    return ShellViscosity(*space_)(SurfaceDistance(space_->mesh, quadratic_patches(surface_, x)), contrast_.ratio);
-  }
-
-
-  double
-  Coupling::distance(const ControlPoints &x) const
-  {
-    return x_.rows() == x.rows() ? (x - x_).rowwise().norm().maxCoeff() : std::numeric_limits<double>::infinity();
+    return ShellViscosity(*space_)(SurfaceDistance(space_->mesh, shell.patches()), contrast_.ratio);
   }
 
 
   void
-  Coupling::extend(const ControlPoints &f, ExtendedForces &forces) const
+  Coupling::set_point_forces(const ShellFields &f, std::vector<double> &forces) const
   {
-    if (interface_ == Interface::plain)
+    forces.resize(3 * interpolation_->local_points().size());
+    for (unsigned int c = 0; c < n_capsules(); ++c)
+      {
+        capsule_.mass_inverse().solve(f[c], density_);
+        transfers_[c].set_point_forces(density_, forces);
+      }
+  }
+
+
+  void
+  Coupling::extend(const ShellFields &f, ExtendedForces &forces) const
+  {
+    if (jumps_->are_none())
       return;
-    mass_inverse_.solve(f, density_);
-    set_point_forces(density_, forces.at_points);
-    const double factor = normal_field_.cwiseProduct(f).sum() / normal_field_.cwiseProduct(volume_gradient_).sum();
-    for (std::size_t i = 0; i < normal_forces_.size(); ++i)
-      forces.at_points[i] -= factor * normal_forces_[i];
-    enrichment_->extend(forces);
+    set_point_forces(f, forces.at_points);
+    for (unsigned int c = 0; c < n_capsules(); ++c)
+      {
+        const ShellConfiguration &shell  = transfers_[c].shell();
+        const double              factor = shell.normal_field().cwiseProduct(f[c]).sum() / shell.normal_square();
+        for (std::size_t i = 3 * std::size_t(transfers_[c].range().begin); i < 3 * std::size_t(transfers_[c].range().end); ++i)
+          forces.at_points[i] -= factor * normal_forces_[i];
+      }
+    jumps_->extend(forces);
   }
 
 
   void
-  Coupling::extend_whole(const ControlPoints &f, ExtendedForces &forces) const
+  Coupling::extend_whole(const ShellFields &f, ExtendedForces &forces) const
   {
     extend(f, forces);
-    if (interface_ == Interface::enriched)
-      enrichment_->complete(forces);
+    if (!jumps_->are_none())
+      jumps_->complete(forces);
   }
 
 
   void
-  Coupling::update_viscous_forces(const FluidBlockVector &fields, const ControlPoints &f)
+  Coupling::update_viscous_forces(const FluidBlockVector &fields, const ShellFields &f)
   {
-    if (interface_ == Interface::plain || contrast_.ratio == 1.)
+    if (jumps_->are_none() || contrast_.ratio == 1.)
       return;
     ExtendedForces forces;
     extend_whole(f, forces);
-    VelocityGradients gradients = velocity_gradients(fields);
-    for (unsigned int c = 0; c < 3; ++c)
-      for (unsigned int d = 0; d < 3; ++d)
-        gradients.col(3 * c + d).array() += contrast_.flow_gradient(c, d);
-    enrichment_->update_viscous_forces(gradients.data(), forces);
+    interpolation_->gradients(fields, moments_);
+    for (const ShellTransfer &transfer : transfers_)
+      {
+        const VelocityGradients undisturbed = transfer.gradients(contrast_.flow, transfer.shell());
+        for (Eigen::Index i = 0; i < undisturbed.size(); ++i)
+          moments_[9 * std::size_t(transfer.range().begin) + i] += undisturbed.data()[i];
+      }
+    jumps_->update_viscous_forces(moments_, forces);
   }
 
 
   double
-  Coupling::undisturbed_work(const ControlPoints &f) const
+  Coupling::undisturbed_work(const ShellFields &f) const
   {
-    if (interface_ == Interface::plain || contrast_.ratio == 1.)
+    if (jumps_->are_none() || contrast_.ratio == 1.)
       return 0.;
     ExtendedForces forces;
     extend_whole(f, forces);
-    return enrichment_->undisturbed_work(forces);
+    return jumps_->undisturbed_work(forces);
   }
 
 
-  ControlPoints
+  ShellFields
   Coupling::velocity_moments(const FluidBlockVector &fields) const
   {
     return all_moments(fields, nullptr);
   }
 
 
-  ControlPoints
+  ShellFields
   Coupling::velocity_moments(const FluidBlockVector &fields, const ExtendedForces &f) const
   {
     return all_moments(fields, &f);
   }
 
 
-  ControlPoints
+  ShellFields
   Coupling::all_moments(const FluidBlockVector &fields, const ExtendedForces *const f) const
   {
     interpolation_->values(fields, values_);
-    if (interface_ == Interface::plain)
+    if (jumps_->are_none())
       return sum_moments(values_);
 
-    enriched_values_.assign(values_.size(), 0.);
-    enrichment_->add_velocities(fields, f, enriched_values_);
+    further_values_.assign(values_.size(), 0.);
+    jumps_->add_velocities(fields, f, further_values_);
     // The transpose of P takes the multiple of v away that makes the further moments orthogonal to m = M^{-1} v.
-    double flux = 0.;
-    for (std::size_t i = 0; i < values_.size(); ++i)
-      {
-        flux += normal_forces_[i] * enriched_values_[i];
-        values_[i] += enriched_values_[i];
-      }
-    MPI_Allreduce(MPI_IN_PLACE, &flux, 1, MPI_DOUBLE, MPI_SUM, communicator_);
-    return sum_moments(values_) - flux / normal_field_.cwiseProduct(volume_gradient_).sum() * volume_gradient_;
-  }
-
-
-  ControlPoints
-  Coupling::sum_moments(const std::vector<double> &values) const
-  {
-    const auto        &local  = interpolation_->local_points();
-    const unsigned int n      = surface_.support_size();
-    ControlPoints      result = ControlPoints::Zero(surface_.n_control_points(), 3);
-    for (const auto &[face, begin, end] : local_faces_)
-      {
-        const int *const support = surface_.support(face);
-        face_.clear();
-        for (unsigned int r = begin; r < end; ++r)
-          face_.push_back(weights_[local[r]] * Vector4(&values[3 * r]));
-        for (unsigned int i = 0; i < n; ++i)
-          {
-            Vector4 sum;
-            for (unsigned int r = begin; r < end; ++r)
-              sum += surface_.stencils(local[r])[i] * face_[r - begin];
-            double *const row = result.data() + 3 * support[i];
-            (Vector4(row) + sum).store(row);
-          }
-      }
-    MPI_Allreduce(MPI_IN_PLACE, result.data(), int(result.size()), MPI_DOUBLE, MPI_SUM, communicator_);
+    std::vector<double> flux(n_capsules(), 0.);
+    for (unsigned int c = 0; c < n_capsules(); ++c)
+      for (std::size_t i = 3 * std::size_t(transfers_[c].range().begin); i < 3 * std::size_t(transfers_[c].range().end); ++i)
+        {
+          flux[c] += normal_forces_[i] * further_values_[i];
+          values_[i] += further_values_[i];
+        }
+    MPI_Allreduce(MPI_IN_PLACE, flux.data(), int(flux.size()), MPI_DOUBLE, MPI_SUM, space_->mesh.communicator());
+    ShellFields result = sum_moments(values_);
+    for (unsigned int c = 0; c < n_capsules(); ++c)
+      result[c] -= flux[c] / transfers_[c].shell().normal_square() * transfers_[c].shell().volume_gradient();
     return result;
   }
 
 
-  ControlPoints
+  ShellFields
+  Coupling::sum_moments(const std::vector<double> &values) const
+  {
+    const Eigen::Index n = capsule_.n_control_points();
+    sums_.assign(3 * std::size_t(n) * n_capsules(), 0.);
+    for (unsigned int c = 0; c < n_capsules(); ++c)
+      transfers_[c].add_moments(values, &sums_[3 * std::size_t(n) * c]);
+    MPI_Allreduce(MPI_IN_PLACE, sums_.data(), int(sums_.size()), MPI_DOUBLE, MPI_SUM, space_->mesh.communicator());
+    ShellFields result;
+    for (unsigned int c = 0; c < n_capsules(); ++c)
+      result.push_back(Eigen::Map<const ControlPoints>(&sums_[3 * std::size_t(n) * c], n, 3));
+    return result;
+  }
+
+
+  ShellFields
   Coupling::interpolate(const FluidBlockVector &fields) const
   {
     return density(velocity_moments(fields));
   }
 
 
-  ControlPoints
-  Coupling::interpolate(const FluidBlockVector &fields, const ControlPoints &f) const
+  ShellFields
+  Coupling::interpolate(const FluidBlockVector &fields, const ShellFields &f) const
   {
     ExtendedForces forces;
     extend(f, forces);
@@ -278,67 +221,82 @@ namespace tanktread
   }
 
 
-  ControlPoints
+  ShellFields
   Coupling::interpolate(const FluidBlockVector &fields, const ExtendedForces &f) const
   {
     return density(velocity_moments(fields, f));
   }
 
 
-  void
-  Coupling::set_point_forces(const ControlPoints &density, std::vector<double> &forces) const
+  ShellFields
+  Coupling::undisturbed_velocity(const UndisturbedFlow &flow, const ShellConfigurations &shells) const
   {
-    const auto   &local = interpolation_->local_points();
-    FaceValues<1> values(surface_, {&density}, face_);
-    forces.resize(3 * local.size());
-    for (const auto &[face, begin, end] : local_faces_)
+    Eigen::Matrix3d    gradient;
+    Eigen::RowVector3d constant;
+    for (unsigned int c = 0; c < 3; ++c)
       {
-        values.reinit(face);
-        for (unsigned int r = begin; r < end; ++r)
-          (weights_[local[r]] * values.at(local[r])[0]).store(&forces[3 * r]);
+        constant[c] = flow.constant[c];
+        for (unsigned int d = 0; d < 3; ++d)
+          gradient(c, d) = flow.linear[c][d];
       }
-  }
-
-
-  void
-  Coupling::carry_pressure(const ControlPoints &f, VertexSides &sides, FluidBlockVector &fields) const
-  {
-    if (interface_ == Interface::plain || x_.rows() == 0)
-      return;
-    ExtendedForces forces;
-    extend_whole(f, forces);
-    enrichment_->carry_pressure(forces, sides, fields);
-  }
-
-
-  VelocityGradients
-  Coupling::velocity_gradients(const FluidBlockVector &u) const
-  {
-    interpolation_->gradients(u, moments_);
-    return Eigen::Map<const VelocityGradients>(moments_.data(), n_local_points(), 9);
-  }
-
-
-  ControlPoints
-  Coupling::density(const ControlPoints &f) const
-  {
-    ControlPoints result;
-    mass_inverse_.solve(f, result);
+    ShellFields result;
+    for (const auto &shell : shells)
+      result.push_back((shell->x() * gradient.transpose()).rowwise() + constant);
+    if (flow.quadratic.norm_square() == 0.)
+      return result;
+    values_.assign(3 * interpolation_->local_points().size(), 0.);
+    for (unsigned int c = 0; c < n_capsules(); ++c)
+      transfers_[c].add_quadratic_velocity(flow, *shells[c], values_);
+    const ShellFields quadratic = density(sum_moments(values_));
+    for (unsigned int c = 0; c < n_capsules(); ++c)
+      result[c] += quadratic[c];
     return result;
   }
 
 
   void
-  Coupling::spread_plainly(const ControlPoints &f, FluidBlockVector &load) const
+  Coupling::carry_pressure(const ShellFields &f, const std::vector<VertexSides *> &sides, FluidBlockVector &fields) const
   {
-    mass_inverse_.solve(f, density_);
-    set_point_forces(density_, values_);
+    if (jumps_->are_none() || !moved_)
+      return;
+    ExtendedForces forces;
+    extend_whole(f, forces);
+    for (unsigned int c = 0; c < n_capsules(); ++c)
+      jumps_->carry_pressure(c, forces, *sides[c], fields);
+  }
+
+
+  std::vector<VelocityGradients>
+  Coupling::velocity_gradients(const FluidBlockVector &u) const
+  {
+    interpolation_->gradients(u, moments_);
+    std::vector<VelocityGradients> result;
+    for (const ShellTransfer &transfer : transfers_)
+      result.push_back(transfer.gradients(moments_));
+    return result;
+  }
+
+
+  ShellFields
+  Coupling::density(const ShellFields &f) const
+  {
+    ShellFields result;
+    for (const ControlPoints &field : f)
+      result.push_back(capsule_.density(field));
+    return result;
+  }
+
+
+  void
+  Coupling::spread_plainly(const ShellFields &f, FluidBlockVector &load) const
+  {
+    set_point_forces(f, values_);
     interpolation_->add_load(values_, {}, load);
   }
 
 
   void
-  Coupling::spread(const ControlPoints &f, FluidBlockVector &load) const
+  Coupling::spread(const ShellFields &f, FluidBlockVector &load) const
   {
     ExtendedForces forces;
     extend(f, forces);
@@ -347,88 +305,43 @@ namespace tanktread
 
 
   void
-  Coupling::spread(const double factor, const ControlPoints &f, const ExtendedForces &forces, FluidBlockVector &load) const
+  Coupling::spread(const double factor, const ShellFields &f, const ExtendedForces &forces, FluidBlockVector &load) const
   {
-    spread_plainly(factor * f, load);
-    if (interface_ == Interface::enriched)
-      enrichment_->add_load(forces, factor, load);
+    set_point_forces(f, values_);
+    for (double &value : values_)
+      value *= factor;
+    interpolation_->add_load(values_, {}, load);
+    jumps_->add_load(forces, factor, load);
   }
 
 
   void
-  Coupling::spread_with_motion(const ControlPoints &f, const ControlPoints &dx, const ControlPoints &g, FluidBlockVector &load) const
+  Coupling::spread_with_motion(const ShellFields &f, const ShellFields &dx, const ShellFields &g, FluidBlockVector &load) const
   {
-    if (interface_ == Interface::enriched)
+    if (!knows_motion())
       throw std::logic_error("The enriched interface does not know how its load changes when the points move.");
-    mass_inverse_.solve(f, density_);
-    const auto   &local = interpolation_->local_points();
-    FaceValues<3> fields(surface_, {&density_, &g, &dx}, face_);
-    values_.resize(3 * local.size());
-    moments_.resize(9 * local.size());
-    for (const auto &[face, begin, end] : local_faces_)
+    const std::size_t n = interpolation_->local_points().size();
+    values_.resize(3 * n);
+    moments_.resize(9 * n);
+    for (unsigned int c = 0; c < n_capsules(); ++c)
       {
-        fields.reinit(face);
-        for (unsigned int r = begin; r < end; ++r)
-          {
-            const auto [density, moment, motion] = fields.at(local[r]);
-            (weights_[local[r]] * density).store(&values_[3 * r]);
-            const Vector4 weighted = weights_[local[r]] * moment;
-            for (unsigned int c = 0; c < 3; ++c)
-              (weighted[c] * motion).store(&moments_[9 * r + 3 * c]);
-          }
+        capsule_.mass_inverse().solve(f[c], density_);
+        transfers_[c].set_point_moments(density_, g[c], dx[c], values_, moments_);
       }
     interpolation_->add_load(values_, moments_, load);
   }
 
 
   void
-  Coupling::add_gradients(const FacePoints &points, const VelocityGradients &gradients, double *const matrix_values) const
+  Coupling::gradient_matrix(const unsigned int c, const VelocityGradients &gradients, SparseMatrix &result) const
   {
-    const unsigned int     n       = surface_.support_size();
-    const AssemblyPattern &pattern = surface_.pattern();
-    const auto            &local   = interpolation_->local_points();
-    const int *const support = surface_.support(points.face), *const places = pattern.places(points.face);
-    const auto add = [&](const unsigned int i, const unsigned int j, const std::array<Vector4, 3> &block) {
-      const int length = pattern.row_length(support[i]);
-      double   *entry  = matrix_values + 9 * pattern.row_start(support[i]) + 3 * places[i * n + j];
-      for (unsigned int c = 0; c < 3; ++c, entry += 3 * length)
-        (Vector4(entry) + block[c]).store(entry);
-    };
-    face_.clear();
-    for (unsigned int r = points.begin; r < points.end; ++r)
-      for (unsigned int c = 0; c < 3; ++c)
-        face_.push_back(weights_[local[r]] * Vector4(&gradients(r, 3 * c)));
-    for (unsigned int i = 0; i < n; ++i)
-      for (unsigned int j = 0; j <= i; ++j)
-        {
-          std::array<Vector4, 3> block;
-          for (unsigned int r = points.begin; r < points.end; ++r)
-            {
-              const double *const N       = surface_.stencils(local[r]);
-              const double        product = N[i] * N[j];
-              for (unsigned int c = 0; c < 3; ++c)
-                block[c] += product * face_[3 * (r - points.begin) + c];
-            }
-          add(i, j, block);
-          if (i != j)
-            add(j, i, block);
-        }
-  }
-
-
-  void
-  Coupling::gradient_matrix(const VelocityGradients &gradients, SparseMatrix &result) const
-  {
-    if (gradients.rows() != Eigen::Index(n_local_points()))
-      throw std::logic_error("gradient_matrix() got gradients at " + std::to_string(gradients.rows()) + " points instead of the " +
-                             std::to_string(n_local_points()) + " points of this rank.");
-    if (result.nonZeros() == surface_.pattern().n_block_entries())
+    const AssemblyPattern &pattern = capsule_.coupling_surface().pattern();
+    if (result.nonZeros() == pattern.n_block_entries())
       result.coeffs().setZero();
     else
-      result = surface_.pattern().block_matrix();
-    for (const FacePoints &points : local_faces_)
-      add_gradients(points, gradients, result.valuePtr());
-    MPI_Allreduce(MPI_IN_PLACE, result.valuePtr(), int(result.nonZeros()), MPI_DOUBLE, MPI_SUM, communicator_);
+      result = pattern.block_matrix();
+    transfers_[c].add_gradient_matrix(gradients, result);
+    MPI_Allreduce(MPI_IN_PLACE, result.valuePtr(), int(result.nonZeros()), MPI_DOUBLE, MPI_SUM, space_->mesh.communicator());
   }
 
 
@@ -445,5 +358,14 @@ namespace tanktread
         n_per_triangle = 9 - n_per_triangle;
       }
     return triangle_quadrature(n_per_triangle, n);
+  }
+
+
+  CapsuleQuadrature
+  capsule_quadrature(const FittedShape &shape, const unsigned int mechanics, const Interface interface, const double h, const double viscosity_ratio)
+  {
+    return {triangle_quadrature(mechanics),
+            coupling_quadrature(shape.topology, shape.control_points, interface, h),
+            interface == Interface::enriched || viscosity_ratio != 1. ? Derivatives::second : Derivatives::first};
   }
 } // namespace tanktread

@@ -164,13 +164,13 @@ namespace tanktread
 
 
   MotionSummary
-  motion_summary(const std::vector<MotionSample> &samples)
+  motion_summary(const std::vector<MotionSample> &samples, const bool ended_steady)
   {
     MotionSummary s{MotionMode::undetermined, nan, nan, nan, nan, nan, nan, nan, nan, nan, nan, nan};
     if (samples.empty())
       return s;
     const std::size_t first   = after_first_half_turn(samples);
-    s.mode                    = mode(samples, first);
+    s.mode                    = ended_steady ? MotionMode::steady : mode(samples, first);
     s.end                     = samples.back().time;
     s.from                    = first < samples.size() ? samples[first].time : nan;
     s.tank_treading_frequency = turning_frequency(samples, first, &MotionSample::delta);

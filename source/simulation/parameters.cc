@@ -6,6 +6,7 @@
 #include <tanktread/base/parameter_file.h>
 #include <tanktread/base/parameter_table.h>
 #include <tanktread/simulation/parameters.h>
+#include <tanktread/simulation/scene_description.h>
 
 #include <deal.II/base/parameter_handler.h>
 
@@ -76,6 +77,7 @@ namespace tanktread
   {
     scene.add_parameters(prm);
     capsule.add_parameters(prm);
+    placement.add_parameters(prm);
     shell.add_parameters(prm);
     shell_mesh.add_parameters(prm);
     fluid_mesh.add_parameters(prm);
@@ -92,7 +94,7 @@ namespace tanktread
                                                        [&] { check_mesh_file(capsule); },
                                                        [&] { shell.check(); },
                                                        [&] { check_inertia(scene, solver); },
-                                                       [&] { fluid_mesh.check(scene.box_side); },
+                                                       [&] { fluid_mesh.check(scene.box().side[0]); },
                                                        [&] { output.check(); },
                                                        [&] { check_output_folder(output.directory); }};
 
@@ -108,6 +110,14 @@ namespace tanktread
         }
     if (!errors.empty())
       throw InputError(errors);
+    try
+      {
+        check_scene(*this); // makes shapes of what is all right so far
+      }
+    catch (const InputError &error)
+      {
+        throw InputError(source.locate(error.what()));
+      }
   }
 
   Parameters

@@ -11,7 +11,7 @@ namespace tanktread
   Eigen::Matrix3d
   particle_stress(const ControlPoints &x, const ControlPoints &force)
   {
-    const Eigen::Matrix3d moment    = x.transpose() * force;
+    const Eigen::Matrix3d moment    = (x.rowwise() - x.colwise().mean()).transpose() * force; // about the middle: forces may have a sum, of rounding at least
     const Eigen::Matrix3d symmetric = -0.5 * (moment + moment.transpose());
     return symmetric - symmetric.trace() / 3. * Eigen::Matrix3d::Identity();
   }

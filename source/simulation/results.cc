@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: what a run leaves in its folder.
 
-#include <deal.II/base/numbers.h>
-
 #include <Eigen/SparseCholesky>
 #include <tanktread/base/exceptions.h>
 #include <tanktread/base/mpi_errors.h>
@@ -16,169 +14,201 @@
 #include <cmath>
 #include <fstream>
 #include <iomanip>
-#include <limits>
 #include <sstream>
 
 namespace tanktread
 {
   namespace
   {
-    const std::vector<std::string> history_names = {"time",
-                                                    "D_xz",
-                                                    "theta",
-                                                    "L",
-                                                    "B",
-                                                    "W",
-                                                    "volume",
-                                                    "volume_error",
-                                                    "area",
-                                                    "membrane_energy",
-                                                    "bending_energy",
-                                                    "dissipation",
-                                                    "newton_iterations",
-                                                    "linear_iterations",
-                                                    "wall_time",
-                                                    "alpha",
-                                                    "delta",
-                                                    "pressure_jump",
-                                                    "step",
-                                                    "cells",
-                                                    "theta_continuous",
-                                                    "S_xx",
-                                                    "S_yy",
-                                                    "S_zz",
-                                                    "S_xy",
-                                                    "S_xz",
-                                                    "S_yz",
-                                                    "intrinsic_viscosity",
-                                                    "N1",
-                                                    "N2"};
+    std::vector<std::string>
+    names(const Row &row)
+    {
+      std::vector<std::string> result;
+      for (const auto &column : row)
+        result.push_back(column.first);
+      return result;
+    }
 
+    std::vector<double>
+    values(const Row &row)
+    {
+      std::vector<double> result;
+      for (const auto &column : row)
+        result.push_back(column.second);
+      return result;
+    }
+
+    /** "_1" and so on where there are several capsules. */
+    std::string
+    suffix(const std::size_t c, const std::size_t n_capsules)
+    {
+      return n_capsules == 1 ? "" : "_" + std::to_string(c + 1);
+    }
+
+    /** Fields on the vertices of one shell, for pictures. */
+    struct ShellPicture
+    {
+      ControlPoints                                        positions;
+      std::vector<std::pair<std::string, Eigen::MatrixXd>> fields;
+    };
+
+    ShellPicture
+    picture(const Capsule &capsule, const SparseMatrix &limit, const ControlPoints &x, const ControlPoints &velocity)
+    {
+      const SubdivisionSurface                                &surface = capsule.surface();
+      const Eigen::VectorXd                                    weights = area_weights(surface, x);
+      const ControlPoints                                      f       = capsule.shell().force(x);
+      const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> mass(mass_matrix(surface, weights));
+      if (mass.info() != Eigen::Success)
+        throw NumericalError("The fields on the shell cannot be drawn: its mass matrix at this shape is singular.");
+      // Control values of the surface field nearest, in the mean square, to values at the quadrature points.
+      const auto projected = [&](const Eigen::VectorXd &at_points) -> Eigen::VectorXd {
+        return limit * Eigen::VectorXd(mass.solve(surface.S().transpose() * weights.cwiseProduct(at_points)));
+      };
+      ShellPicture result{limit * x, {{"velocity", limit * velocity}, {"force_density", limit * Eigen::MatrixXd(mass.solve(Eigen::MatrixXd(f)))}}};
+      result.fields.emplace_back("area_stretch", projected(weights.cwiseQuotient(capsule.shell().reference_weights())));
+      if (surface.derivatives() == Derivatives::second)
+        result.fields.emplace_back("mean_curvature", projected(mean_curvature(surface, x)));
+      return result;
+    }
+
+    /** Puts the fields of one shell below those of the others. */
+    void
+    append(const ShellPicture &shell, ShellPicture &all)
+    {
+      if (all.fields.empty())
+        {
+          all = shell;
+          return;
+        }
+      const auto below = [](const Eigen::MatrixXd &upper, const Eigen::MatrixXd &lower) {
+        Eigen::MatrixXd both(upper.rows() + lower.rows(), upper.cols());
+        both << upper, lower;
+        return both;
+      };
+      all.positions = below(all.positions, shell.positions);
+      for (std::size_t k = 0; k < all.fields.size(); ++k)
+        all.fields[k].second = below(all.fields[k].second, shell.fields[k].second);
+    }
+
+    Row
+    summary_row(const MotionSummary &s)
+    {
+      return {{"from", s.from},
+              {"end", s.end},
+              {"tank_treading_frequency", s.tank_treading_frequency},
+              {"tumbling_frequency", s.tumbling_frequency},
+              {"D_period", s.D_period},
+              {"D_frequency", 1. / s.D_period},
+              {"D_minimum", s.D_minimum},
+              {"D_maximum", s.D_maximum},
+              {"D_last", s.D_last},
+              {"theta_minimum", s.theta_minimum},
+              {"theta_maximum", s.theta_maximum},
+              {"theta_last", s.theta_last}};
+    }
   } // namespace
 
 
-  Observables
-  observe(const ShellView &shell, const Fluid &fluid, const State &state)
-  {
-    Observables result;
-    result.ellipsoid = inertia_ellipsoid(shell.surface, state.x);
-    result.theta_over_pi =
-      result.ellipsoid.taylor_parameter < 1e-4 ? std::numeric_limits<double>::quiet_NaN() : result.ellipsoid.inclination / dealii::numbers::PI;
-    result.volume        = enclosed_volume(shell.surface, state.x);
-    result.volume_error  = result.volume / shell.initial_volume - 1.;
-    result.area          = surface_area(shell.surface, state.x);
-    result.energy        = shell.shell.energy(state.x);
-    result.pressure_jump = state.pressure_jump;
-    result.n_cells       = fluid.mesh().triangulation().n_global_active_cells();
-    return result;
-  }
-
-
-  Results::Results(const std::string &folder, const MPI_Comm communicator)
+  Results::Results(const std::string &folder, const unsigned int n_capsules, const MPI_Comm communicator)
     : folder_(folder)
     , communicator_(communicator)
+    , n_capsules_(n_capsules)
     , shell_series_(folder + "/shell.pvd")
     , fluid_series_(folder + "/fluid.pvd")
   {
     on_first_rank(communicator, [&] {
-      history_  = std::make_unique<CsvWriter>(folder + "/history.csv", history_names);
-      contours_ = std::make_unique<CsvWriter>(folder + "/contours.csv", std::vector<std::string>{"time", "x", "z"});
+      for (unsigned int c = 0; c < n_capsules; ++c)
+        {
+          const std::string end = suffix(c, n_capsules) + ".csv";
+          histories_.push_back(std::make_unique<CsvWriter>(folder + "/history" + end, names(history_row({}, {}))));
+          contours_.push_back(std::make_unique<CsvWriter>(folder + "/contours" + end, std::vector<std::string>{"time", "x", "z"}));
+        }
+      suspension_ = std::make_unique<CsvWriter>(folder + "/suspension.csv", names(suspension_row({}, {})));
     });
   }
 
 
   void
-  Results::add_history(const Observables &o)
+  Results::add_history(const StepObservables &step, const std::vector<CapsuleObservables> &capsules, const SuspensionObservables &suspension)
   {
-    const std::vector<double> row = {o.time,
-                                     o.ellipsoid.taylor_parameter,
-                                     o.theta_over_pi,
-                                     o.ellipsoid.L,
-                                     o.ellipsoid.B,
-                                     o.ellipsoid.W,
-                                     o.volume,
-                                     o.volume_error,
-                                     o.area,
-                                     o.energy.membrane,
-                                     o.energy.bending,
-                                     o.dissipation,
-                                     double(o.newton_iterations),
-                                     double(o.linear_iterations),
-                                     o.wall_time,
-                                     o.alpha,
-                                     o.delta,
-                                     o.pressure_jump,
-                                     o.step,
-                                     o.n_cells,
-                                     o.theta_continuous,
-                                     o.stress(0, 0),
-                                     o.stress(1, 1),
-                                     o.stress(2, 2),
-                                     o.stress(0, 1),
-                                     o.stress(0, 2),
-                                     o.stress(1, 2),
-                                     o.rheology.intrinsic_viscosity,
-                                     o.rheology.normal_difference_1,
-                                     o.rheology.normal_difference_2};
-    on_first_rank(communicator_, [&] { history_->row(row); });
+    on_first_rank(communicator_, [&] {
+      for (unsigned int c = 0; c < n_capsules_; ++c)
+        histories_[c]->row(values(history_row(step, capsules[c])));
+      suspension_->row(values(suspension_row(step, suspension)));
+    });
   }
 
 
   void
-  Results::write_shell(const std::string &file, const ShellView &shell, const State &state, const ControlPoints &velocity) const
+  Results::write_shells(const std::string &file, const Capsule &capsule, const State &state, const ShellFields &velocities) const
   {
-    const SparseMatrix                                       limit   = vertex_limit_stencils(shell.topology);
-    const Eigen::VectorXd                                    weights = area_weights(shell.surface, state.x);
-    const Eigen::VectorXd                                    stretch = weights.cwiseQuotient(shell.shell.reference_weights());
-    const ControlPoints                                      f       = shell.shell.force(state.x);
-    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> mass(mass_matrix(shell.surface, weights));
-
-    // Control values of the surface field nearest, in the mean square, to values at the quadrature points.
-    const auto projected = [&](const Eigen::VectorXd &values) -> Eigen::VectorXd {
-      return mass.solve(shell.surface.S().transpose() * weights.cwiseProduct(values));
-    };
-    std::vector<std::pair<std::string, Eigen::MatrixXd>> fields = {{"velocity", limit * velocity},
-                                                                   {"force_density", limit * Eigen::MatrixXd(mass.solve(Eigen::MatrixXd(f)))},
-                                                                   {"area_stretch", limit * projected(stretch)}};
-    if (shell.surface.derivatives() == Derivatives::second)
-      fields.emplace_back("mean_curvature", limit * projected(mean_curvature(shell.surface, state.x)));
-    write_surface_vtu(file, limit * state.x, shell.topology.faces, fields);
+    const SparseMatrix              limit = vertex_limit_stencils(capsule.topology());
+    ShellPicture                    all;
+    std::vector<std::array<int, 3>> faces;
+    Eigen::VectorXd                 number(0);
+    for (unsigned int c = 0; c < n_capsules_; ++c)
+      {
+        append(picture(capsule, limit, state.capsules[c].x, velocities[c]), all);
+        const int first = int(c * capsule.n_control_points());
+        for (const auto &face : capsule.topology().faces)
+          faces.push_back({face[0] + first, face[1] + first, face[2] + first});
+        number.conservativeResize(first + capsule.n_control_points());
+        number.tail(capsule.n_control_points()).setConstant(c + 1);
+      }
+    if (n_capsules_ > 1)
+      all.fields.emplace_back("capsule", number);
+    write_surface_vtu(file, all.positions, faces, all.fields);
   }
 
 
   void
-  Results::write_contour(const double time, const TriangleMesh &topology, const ControlPoints &x)
+  Results::write_contours(const double time, const TriangleMesh &topology, const ShellFields &x)
   {
-    // Refined twice, the polygon that is cut is close to the smooth surface.
-    TriangleMesh mesh = topology;
-    for (Eigen::Index i = 0; i < x.rows(); ++i)
-      mesh.vertices[i] = x.row(i);
-    mesh = loop_refine(loop_refine(mesh));
-    const Eigen::Map<const ControlPoints> refined(mesh.vertices.front().data(), mesh.vertices.size(), 3);
-    for (const Eigen::Vector2d &point : shear_plane_contour(limit_mesh(mesh, refined)))
-      contours_->row({time, point[0], point[1]});
+    for (unsigned int c = 0; c < n_capsules_; ++c)
+      {
+        // Refined twice, the polygon that is cut is close to the smooth surface.
+        const Eigen::RowVector3d middle(0., x[c].col(1).mean(), 0.);
+        TriangleMesh             mesh = topology;
+        for (Eigen::Index i = 0; i < x[c].rows(); ++i)
+          mesh.vertices[i] = x[c].row(i) - middle;
+        mesh = loop_refine(loop_refine(mesh));
+        const Eigen::Map<const ControlPoints> refined(mesh.vertices.front().data(), mesh.vertices.size(), 3);
+        for (const Eigen::Vector2d &point : shear_plane_contour(limit_mesh(mesh, refined)))
+          contours_[c]->row({time, point[0], point[1]});
+      }
   }
 
 
   void
-  Results::add_fields(const double time, const ShellView &shell, const ControlPoints &velocity, const Fluid &fluid, const State &state, const double shear_rate)
+  Results::add_fields(const double time, Scene &scene, const State &state, const ShellFields &velocities)
   {
     std::ostringstream number;
     number << std::setw(4) << std::setfill('0') << n_fields_;
-    const Interior interior(shell.surface, state.x);
-    const double   side              = fluid.mesh().side();
-    const auto     interior_pressure = [&](const dealii::Point<3> &point) {
-      // The periodic image of the point that is nearest to the capsule.
-      Eigen::Vector3d y(point[0], point[1], point[2]);
-      for (unsigned int d = 0; d < 2; ++d)
-        y[d] -= side * std::round((y[d] - interior.centre()[d]) / side);
-      return interior.contains(y) ? state.pressure_jump : 0.;
+    const Capsule        &capsule = scene.capsule();
+    const Box            &box     = scene.description().box;
+    std::vector<Interior> interiors;
+    for (const CapsuleState &of_capsule : state.capsules)
+      interiors.emplace_back(capsule.surface(), of_capsule.x);
+    const auto interior_pressure = [&](const dealii::Point<3> &point) {
+      for (std::size_t c = 0; c < interiors.size(); ++c)
+        {
+          // The periodic image of the point that is nearest to the capsule.
+          Eigen::Vector3d y(point[0], point[1], point[2]);
+          for (unsigned int d = 0; d < 3; ++d)
+            if (box.is_periodic(d))
+              y[d] -= box.side[d] * std::round((y[d] - interiors[c].centre()[d]) / box.side[d]);
+          if (interiors[c].contains(y))
+            return state.capsules[c].pressure_jump;
+        }
+      return 0.;
     };
-    const std::string fluid_file = write_fluid_fields(folder_, "fluid", n_fields_, fluid.space(), state.fluid, shear_rate, interior_pressure);
+    const std::string fluid_file =
+      write_fluid_fields(folder_, "fluid", n_fields_, scene.fluid().space(), state.fluid, scene.level().flow().linear[0][2], interior_pressure);
     on_first_rank(communicator_, [&] {
       const std::string shell_file = "shell_" + number.str() + ".vtu";
-      write_shell(folder_ + "/" + shell_file, shell, state, velocity);
-      write_contour(time, shell.topology, state.x);
+      write_shells(folder_ + "/" + shell_file, capsule, state, velocities);
+      write_contours(time, capsule.topology(), positions(state));
       shell_series_.add(time, shell_file);
       fluid_series_.add(time, fluid_file);
     });
@@ -187,33 +217,26 @@ namespace tanktread
 
 
   void
-  Results::add_contour(const double time, const ShellView &shell, const ControlPoints &x)
+  Results::add_contours(const double time, const Capsule &capsule, const ShellFields &x)
   {
-    on_first_rank(communicator_, [&] { write_contour(time, shell.topology, x); });
+    on_first_rank(communicator_, [&] { write_contours(time, capsule.topology(), x); });
   }
 
 
   void
-  Results::write_summary(const std::string &outcome, const MotionSummary &s) const
+  Results::write_summary(const std::string &outcome, const std::vector<MotionSummary> &capsules) const
   {
-    const std::vector<std::pair<std::string, double>> numbers = {{"from", s.from},
-                                                                 {"end", s.end},
-                                                                 {"tank_treading_frequency", s.tank_treading_frequency},
-                                                                 {"tumbling_frequency", s.tumbling_frequency},
-                                                                 {"D_period", s.D_period},
-                                                                 {"D_frequency", 1. / s.D_period},
-                                                                 {"D_minimum", s.D_minimum},
-                                                                 {"D_maximum", s.D_maximum},
-                                                                 {"D_last", s.D_last},
-                                                                 {"theta_minimum", s.theta_minimum},
-                                                                 {"theta_maximum", s.theta_maximum},
-                                                                 {"theta_last", s.theta_last}};
     on_first_rank(communicator_, [&] {
       const std::string name = folder_ + "/summary.csv";
       std::ofstream     file(name);
-      file << "quantity,value\noutcome," << outcome << "\nmode," << word(s.mode) << '\n' << std::setprecision(10);
-      for (const auto &[quantity, value] : numbers)
-        file << quantity << ',' << value << '\n';
+      file << "quantity,value\noutcome," << outcome << '\n' << std::setprecision(10);
+      for (std::size_t c = 0; c < capsules.size(); ++c)
+        {
+          const std::string number = suffix(c, capsules.size());
+          file << "mode" << number << ',' << word(capsules[c].mode) << '\n';
+          for (const auto &[quantity, value] : summary_row(capsules[c]))
+            file << quantity << number << ',' << value << '\n';
+        }
       if (!(file << std::flush))
         throw InputError("cannot write \"" + name + "\"");
     });
@@ -221,10 +244,13 @@ namespace tanktread
 
 
   std::string
-  Results::write_failed(const ShellView &shell, const State &state) const
+  Results::write_failed(Scene &scene, const State &state) const
   {
     const std::string file = folder_ + "/failed_shell.vtu";
-    on_first_rank(communicator_, [&] { write_shell(file, shell, state, ControlPoints::Zero(state.x.rows(), 3)); });
+    ShellFields       rest;
+    for (const CapsuleState &capsule : state.capsules)
+      rest.push_back(ControlPoints::Zero(capsule.x.rows(), 3));
+    on_first_rank(communicator_, [&] { write_shells(file, scene.capsule(), state, rest); });
     return file;
   }
 } // namespace tanktread

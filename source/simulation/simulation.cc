@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Part of Tanktread: one run from the initial shape to the end time.
+// Part of Tanktread: one run from the initial shapes to the end time.
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/numbers.h>
@@ -8,11 +8,12 @@
 #include <tanktread/base/mpi_errors.h>
 #include <tanktread/base/output_folder.h>
 #include <tanktread/fluid/field_transfer.h>
+#include <tanktread/simulation/scene_description.h>
 #include <tanktread/simulation/simulation.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <fstream>
 #include <sstream>
 #include <utility>
 
@@ -20,13 +21,6 @@ namespace tanktread
 {
   namespace
   {
-    Derivatives
-    derivatives_needed(const Parameters &parameters)
-    {
-      return parameters.scene.bending_modulus() > 0. || parameters.shell.thickness > 0. ? Derivatives::second : Derivatives::first;
-    }
-
-
     std::string
     number(const double value)
     {
@@ -42,10 +36,14 @@ namespace tanktread
       RunDescription run;
       run.parameter_file = parameters.file;
       run.n_ranks        = n_ranks;
-      run.shear          = parameters.scene.flow == Flow::shear;
+      run.flow           = word(parameters.scene.flow);
+      run.has_rate       = parameters.scene.flow != Flow::quiescent;
       run.G              = 1. / parameters.scene.surface_young_modulus();
       run.khat           = parameters.scene.bending_modulus() / parameters.scene.surface_young_modulus();
-      run.box_side       = parameters.scene.box_side;
+      const Box box      = parameters.scene.box();
+      for (unsigned int d = 0; d < 3; ++d)
+        run.box += (d == 0 ? "" : " x ") + number(box.side[d]) + (box.is_periodic(d) ? " periodic" : "");
+      run.n_capsules = parameters.placement.centres.size();
       run.Re             = parameters.scene.reynolds_number;
       if (run.Re == 0.)
         run.left_out.push_back("inertia (Re = 0)");
@@ -66,15 +64,6 @@ namespace tanktread
     }
 
 
-    SubdivisionSurface
-    make_coupling_surface(const FittedShape &shape, const Interface interface, const double viscosity_ratio, const FluidMesh &mesh)
-    {
-      return {shape.topology,
-              coupling_quadrature(shape.topology, shape.control_points, interface, mesh.cell_size(mesh.finest_level())),
-              interface == Interface::enriched || viscosity_ratio != 1. ? Derivatives::second : Derivatives::first};
-    }
-
-
     /** How fast axes (a) and inclination (radians) change. */
     double
     rate_of_change(const InertiaEllipsoid &before, const InertiaEllipsoid &after, const double length)
@@ -89,70 +78,45 @@ namespace tanktread
   Simulation::Simulation(const Parameters &parameters, const MPI_Comm communicator)
     : parameters_(parameters)
     , communicator_(communicator)
-    , first_rank_(dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
-    , log_(first_rank_)
-    , shape_(make_capsule(parameters.capsule, parameters.shell_mesh.level))
-    , surface_(shape_.topology, triangle_quadrature(parameters.shell_mesh.quadrature), derivatives_needed(parameters))
-    , shell_(surface_, parameters.shell, {parameters.scene.surface_young_modulus(), parameters.scene.bending_modulus()}, shape_.control_points)
-    , distributed_shell_(shell_, shape_.topology, communicator)
-    , fluid_(communicator, parameters.scene.box_side, parameters.fluid_mesh, parameters.scene.reynolds_number > 0.)
-    , coupling_surface_(make_coupling_surface(shape_, parameters.solver.interface, parameters.scene.viscosity_ratio, fluid_.mesh()))
-    , coupling_(coupling_surface_, area_weights(coupling_surface_, shape_.control_points), parameters.solver.interface)
-    , view_{shape_.topology, surface_, shell_, enclosed_volume(surface_, shape_.control_points)}
-    , flow_{parameters.scene.flow == Flow::shear ? 1. : 0.}
-    , solver_(parameters.solver,
-              distributed_shell_,
-              surface_,
-              coupling_,
-              view_.initial_volume,
-              flow_,
-              timings_,
-              parameters.scene.viscosity_ratio,
-              parameters.scene.reynolds_number)
-    , stepper_(parameters.time, parameters.solver.coupling, parameters.scene.end_time, solver_, log_)
-    , next_fields_(parameters.output.field_interval)
+    , log_(dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
+    , scene_(scene_description(parameters), communicator)
+    , memory_(parameters.time)
+    , stepper_(parameters.time, parameters.solver.coupling, parameters.scene.end_time, scene_, memory_.steps, log_)
+    , state_(scene_.initial_state())
   {
-    state_.x = shape_.control_points;
-    stepper_.start(time_, state_.x);
-    const Eigen::RowVector3d extent = 2. * state_.x.cwiseAbs().colwise().maxCoeff();
-    if (extent.maxCoeff() >= parameters.scene.box_side)
-      {
-        std::ostringstream message;
-        message << "Scene/Box side is " << parameters.scene.box_side << "; allowed: more than the capsule's extent, " << extent.maxCoeff() << '.';
-        throw InputError(message.str());
-      }
+    memory_.next_fields = parameters.output.field_interval;
+    stepper_.start(memory_.time, positions(state_));
   }
 
 
   void
-  Simulation::refine_around_shell()
+  Simulation::refine_around_shells(const std::vector<ShellFields> &others)
   {
-    const Timings::Scope                 scope(timings_, "Fluid mesh and multigrid");
     std::unique_ptr<const FieldTransfer> transfer;
     std::vector<FluidBlockVector *>      flows;
     for (State *const level : stepper_.levels(state_))
       {
-        level->sides.clear(); // of the old mesh's vertices
+        for (CapsuleState &capsule : level->capsules)
+          capsule.sides.clear(); // of the old mesh's vertices
         flows.push_back(&level->fluid);
       }
-    if (solver_.has_inertia() && n_steps_ > 0)
-      transfer = std::make_unique<FieldTransfer>(fluid_.space(), flows);
-    fluid_.adapt(coupling_.points(state_.x));
-    solver_.attach(fluid_);
+    if (scene_.level().has_inertia() && memory_.n_steps > 0)
+      transfer = std::make_unique<FieldTransfer>(scene_.fluid().space(), flows);
+    scene_.refine_around(state_, others);
     if (transfer)
-      return transfer->interpolate(fluid_.space(), flows);
+      return transfer->interpolate(scene_.fluid().space(), flows);
     stepper_.forget_flow();
-    fluid_.space().reinit(state_.fluid);
+    scene_.fluid().space().reinit(state_.fluid);
   }
 
 
   unsigned int
   Simulation::flow_on_new_mesh()
   {
-    if (!solver_.has_inertia())
-      return solver_.solve_flow(state_);
-    if (n_steps_ == 0)
-      solver_.start_undisturbed(state_);
+    if (!scene_.level().has_inertia())
+      return scene_.solver().solve_flow(state_, memory_.time);
+    if (memory_.n_steps == 0)
+      scene_.solver().start_undisturbed(state_);
     return 0;
   }
 
@@ -172,7 +136,7 @@ namespace tanktread
     log_.header(description(parameters_, dealii::Utilities::MPI::n_mpi_processes(communicator_)));
     if (!moved_to.empty())
       log_.line("The folder held a former run, now in " + moved_to + ".");
-    results_ = std::make_unique<Results>(folder, communicator_);
+    results_ = std::make_unique<Results>(folder, state_.capsules.size(), communicator_);
   }
 
 
@@ -180,141 +144,199 @@ namespace tanktread
   Simulation::start()
   {
     StepResult first;
-    refine_around_shell();
+    refine_around_shells();
     first.linear_iterations = flow_on_new_mesh();
 
+    const FluidMesh   &mesh    = scene_.fluid().mesh();
+    const Capsule     &capsule = scene_.capsule();
     std::ostringstream text;
-    text << "Shell: " << surface_.n_control_points() << " control points, " << surface_.n_points() << " quadrature points, " << coupling_surface_.n_points()
-         << " coupling points. Fluid: cells from " << fluid_.mesh().cell_size(fluid_.mesh().coarsest_level()) << " a to "
-         << fluid_.mesh().cell_size(fluid_.mesh().finest_level()) << " a, " << fluid_.mesh().triangulation().n_global_active_cells() << " now, with "
-         << fluid_.space().velocity->partitioner()->size() << " velocity and " << fluid_.space().pressure->partitioner()->size() << " pressure unknowns.";
+    text << "Shell: " << capsule.n_control_points() << " control points, " << capsule.surface().n_points() << " quadrature points, "
+         << capsule.coupling_surface().n_points() << " coupling points. Fluid: cells from " << mesh.cell_size(mesh.coarsest_level()) << " a to "
+         << mesh.cell_size(mesh.finest_level()) << " a, " << mesh.triangulation().n_global_active_cells() << " now, with "
+         << scene_.fluid().space().velocity->partitioner()->size() << " velocity and " << scene_.fluid().space().pressure->partitioner()->size()
+         << " pressure unknowns.";
     log_.line(text.str());
     record(first, false);
   }
 
 
   bool
-  Simulation::is_steady(const InertiaEllipsoid &before, const InertiaEllipsoid &after, const double length)
+  Simulation::is_steady(const double length)
   {
+    double fastest = 0.;
+    for (std::size_t c = 0; c < state_.capsules.size(); ++c)
+      fastest = std::max(
+        fastest, rate_of_change(memory_.capsules[c].ellipsoid, inertia_ellipsoid(scene_.capsule().surface(), state_.capsules[c].x), length));
+    fastest = dealii::Utilities::MPI::broadcast(communicator_, fastest, 0);
     // Three steps in a row: at an extremum of the shape one alone may be quiet.
-    n_quiet_steps_ = rate_of_change(before, after, length) < parameters_.time.steady_tolerance ? n_quiet_steps_ + 1 : 0;
-    return n_quiet_steps_ == 3;
+    memory_.n_quiet_steps = fastest < parameters_.time.steady_tolerance ? memory_.n_quiet_steps + 1 : 0;
+    return memory_.n_quiet_steps == 3;
   }
 
 
   bool
   Simulation::is_due(double &next, const double interval) const
   {
-    const double rounding = 1e-9 * parameters_.scene.end_time;
-    if (time_ < next - rounding)
+    if (memory_.time < next - rounding())
       return false;
     if (interval == 0.)
       return true;
-    while (next <= time_ + rounding)
+    while (next <= memory_.time + rounding())
       next += interval;
     return true;
   }
 
 
   void
+  Simulation::remember(std::vector<CapsuleObservables> &capsules)
+  {
+    for (std::size_t c = 0; c < capsules.size(); ++c)
+      {
+        CapsuleObservables  &o = capsules[c];
+        const ControlPoints &x = state_.capsules[c].x;
+        if (memory_.capsules.size() == c)
+          memory_.capsules.push_back({PhaseAngles(scene_.capsule().topology(), x, o.ellipsoid, o.theta_over_pi), {}, {}});
+        CapsuleMemory &memory = memory_.capsules[c];
+        memory.ellipsoid      = o.ellipsoid;
+        memory.phase.update(x, o.ellipsoid, o.theta_over_pi);
+        o.alpha            = memory.phase.alpha();
+        o.delta            = memory.phase.delta();
+        o.theta_continuous = memory.phase.theta();
+        memory.motion.push_back({memory_.time, o.ellipsoid.taylor_parameter, o.theta_continuous, o.alpha, o.delta});
+      }
+  }
+
+
+  void
+  Simulation::log_step(const StepObservables &step, const std::vector<CapsuleObservables> &capsules)
+  {
+    double volume_error = 0.;
+    for (const CapsuleObservables &capsule : capsules)
+      if (!(std::abs(capsule.volume_error) <= std::abs(volume_error)))
+        volume_error = capsule.volume_error;
+    const double remaining = memory_.n_steps == 0 ? -1. : step.wall_time * (parameters_.scene.end_time - memory_.time) / memory_.time;
+    log_.step({memory_.n_steps,
+               step.time,
+               step.step,
+               step.newton_iterations,
+               step.linear_iterations,
+               capsules[0].ellipsoid.taylor_parameter,
+               capsules[0].theta_over_pi,
+               volume_error,
+               remaining});
+  }
+
+
+  void
   Simulation::record(const StepResult &step, const bool last)
   {
-    const Timings::Scope scope(timings_, "Output");
-    Observables          o        = observe(view_, fluid_, state_);
-    const ControlPoints  velocity = solver_.shell_velocity(state_);
-    o.dissipation                 = solver_.dissipation(state_);
-    ellipsoid_                    = o.ellipsoid;
-    if (!phase_)
-      phase_ = std::make_unique<PhaseAngles>(shape_.topology, state_.x, o.ellipsoid, o.theta_over_pi);
-    phase_->update(state_.x, o.ellipsoid, o.theta_over_pi);
-    o.alpha            = phase_->alpha();
-    o.delta            = phase_->delta();
-    o.theta_continuous = phase_->theta();
-    o.stress           = particle_stress(state_.x, state_.force); // with one viscosity the forces are all of it
-    if (parameters_.scene.viscosity_ratio != 1.)
-      o.stress += viscous_stress(surface_, state_.x, velocity, parameters_.scene.viscosity_ratio);
-    o.rheology          = rheology(o.stress, o.volume, flow_.shear_rate);
-    o.time              = time_;
+    const Timings::Scope            scope(scene_.timings(), "Output");
+    const ShellFields               velocities = scene_.level().shell_velocity(state_);
+    std::vector<CapsuleObservables> capsules   = observe(scene_, state_, velocities);
+    remember(capsules);
+    StepObservables o;
+    o.time              = memory_.time;
     o.step              = step.length;
+    o.dissipation       = scene_.level().dissipation(state_);
     o.newton_iterations = step.newton_iterations;
     o.linear_iterations = step.linear_iterations;
-    o.wall_time         = timings_.elapsed();
-    const bool first = n_steps_ == 0, fields_wanted = parameters_.output.field_interval > 0.;
-    if (is_due(next_history_, parameters_.output.history_interval) || last)
-      results_->add_history(o);
-    motion_.push_back({time_, o.ellipsoid.taylor_parameter, o.theta_continuous, o.alpha, o.delta});
-    const bool fields = first || last || (fields_wanted && is_due(next_fields_, parameters_.output.field_interval));
+    o.n_cells           = scene_.fluid().mesh().triangulation().n_global_active_cells();
+    o.wall_time         = scene_.timings().elapsed();
+    if (is_due(memory_.next_history, parameters_.output.history_interval) || last)
+      results_->add_history(o, capsules, observe_suspension(scene_, state_, capsules));
+    const double interval = parameters_.output.field_interval;
+    const bool   fields   = memory_.n_steps == 0 || last || (interval > 0. && is_due(memory_.next_fields, interval));
     add_contours(step.length, fields);
     if (fields)
-      results_->add_fields(time_, view_, velocity, fluid_, state_, flow_.shear_rate);
-    const double remaining = n_steps_ == 0 ? -1. : o.wall_time * (parameters_.scene.end_time - time_) / time_;
-    log_.step(
-      {n_steps_, time_, step.length, step.newton_iterations, step.linear_iterations, o.ellipsoid.taylor_parameter, o.theta_over_pi, o.volume_error, remaining});
+      results_->add_fields(memory_.time, scene_, state_, velocities);
+    log_step(o, capsules);
   }
 
 
   void
   Simulation::add_contours(const double length, const bool but_now)
   {
-    const double rounding = 1e-9 * parameters_.scene.end_time;
     for (const double time : parameters_.output.contour_times)
-      if (time > time_ - length + rounding && time <= time_ + rounding && !(but_now && time > time_ - rounding))
-        results_->add_contour(time, view_, stepper_.position(time));
+      if (time > memory_.time - length + rounding() && time <= memory_.time + rounding() && !(but_now && time > memory_.time - rounding()))
+        results_->add_contours(time, scene_.capsule(), stepper_.position(time));
   }
 
 
   void
   Simulation::summarise(const std::string &outcome)
   {
-    const MotionSummary summary = motion_summary(motion_);
-    log_.line("\n" + motion_text(summary));
-    results_->write_summary(outcome, summary);
+    std::vector<MotionSummary> summaries;
+    for (std::size_t c = 0; c < memory_.capsules.size(); ++c)
+      {
+        summaries.push_back(motion_summary(memory_.capsules[c].motion, outcome == "steady"));
+        log_.line("\n" + (memory_.capsules.size() > 1 ? "Capsule " + std::to_string(c + 1) + ". " : "") + motion_text(summaries.back()));
+      }
+    results_->write_summary(outcome, summaries);
   }
 
 
-  void
+  StepResult
+  Simulation::step()
+  {
+    StepResult result = stepper_.step(state_, memory_.time, false);
+    if (result.beyond_mesh.empty())
+      return result;
+    log_.line("Step of length " + number(result.length) + " repeated on a mesh around its end too: the shells have left the finest cells.");
+    refine_around_shells({result.beyond_mesh});
+    const unsigned int remeshing = flow_on_new_mesh();
+    StepResult         again     = stepper_.step(state_, memory_.time, true);
+    again.newton_iterations += result.newton_iterations;
+    again.linear_iterations += result.linear_iterations + remeshing;
+    return again;
+  }
+
+
+  std::string
   Simulation::advance()
   {
-    const double rounding = 1e-9 * parameters_.scene.end_time;
     start();
+    bool steady = false;
     for (bool last = parameters_.scene.end_time <= 0.; !last;)
       {
-        const InertiaEllipsoid before = ellipsoid_;
-        StepResult             step   = stepper_.step(state_, time_);
-        step.linear_iterations += std::exchange(remeshing_iterations_, 0);
-        time_ += step.length;
-        ++n_steps_;
-        const bool steady = is_steady(before, inertia_ellipsoid(surface_, state_.x), step.length);
-        last              = steady || time_ >= parameters_.scene.end_time - rounding;
-        record(step, last);
+        StepResult result = step();
+        result.linear_iterations += std::exchange(memory_.remeshing_iterations, 0);
+        memory_.time += result.length;
+        ++memory_.n_steps;
+        steady = is_steady(result.length);
+        last   = steady || memory_.time >= parameters_.scene.end_time - rounding();
+        record(result, last);
         if (steady)
           log_.line("Steady: axes and inclination have changed slower than Time/Steady tolerance in three steps.");
-        if (!last && !fluid_.mesh().covers(coupling_.points(state_.x), coupling_.interface() == Interface::enriched ? 1. : 0.5))
+        if (!last && !scene_.covers(state_))
           {
-            refine_around_shell();
-            remeshing_iterations_ = flow_on_new_mesh();
+            refine_around_shells();
+            memory_.remeshing_iterations = flow_on_new_mesh();
           }
       }
+    return steady ? "steady" : "done";
   }
 
 
   void
   Simulation::run()
   {
+    const Meeting meeting(communicator_);
     make_folder();
     try
       {
-        advance();
+        const std::string outcome = advance();
+        summarise(outcome);
       }
     catch (const NumericalError &error)
       {
-        log_.line("FAILED at time " + std::to_string(time_) + ": " + error.what());
-        log_.line("Last good state: " + results_->write_failed(view_, state_) + ".");
+        if (!meeting.all_come())
+          throw; // the other ranks have not failed, and wait for this one elsewhere: nothing can be written together
+        log_.line("FAILED at time " + std::to_string(memory_.time) + ": " + error.what());
+        log_.line("Last good state: " + results_->write_failed(scene_, state_) + ".");
         summarise("failed");
-        log_.timings(timings_);
+        log_.timings(scene_.timings());
         throw;
       }
-    summarise("done");
-    log_.timings(timings_);
+    log_.timings(scene_.timings());
   }
 } // namespace tanktread

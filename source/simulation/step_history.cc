@@ -10,7 +10,7 @@
 namespace tanktread
 {
   void
-  StepHistory::add(const double time, const ControlPoints &x)
+  StepHistory::add(const double time, const ShellFields &x)
   {
     levels_.push_front({time, x});
     if (levels_.size() > 3)
@@ -18,12 +18,18 @@ namespace tanktread
   }
 
 
-  ImplicitStep
+  ShellSteps
   StepHistory::step(const double length) const
   {
-    if (!is_second_order())
-      return backward_euler_step(levels_[0].x, length);
-    return bdf2_step(levels_[0].x, levels_[1].x, length, levels_[0].time - levels_[1].time);
+    ShellSteps result;
+    for (std::size_t c = 0; c < levels_[0].x.size(); ++c)
+      {
+        const ImplicitStep of_capsule = is_second_order() ? bdf2_step(levels_[0].x[c], levels_[1].x[c], length, levels_[0].time - levels_[1].time) :
+                                                            backward_euler_step(levels_[0].x[c], length);
+        result.xhat.push_back(of_capsule.xhat);
+        result.tau = of_capsule.tau;
+      }
+    return result;
   }
 
 
@@ -38,41 +44,49 @@ namespace tanktread
 
 
   double
-  StepHistory::local_error(const double length, const ControlPoints &x) const
+  StepHistory::local_error(const double length, const ShellFields &x) const
   {
     const std::size_t order = is_second_order() ? 2 : 1;
     if (levels_.size() < order + 1)
       return 0.;
 
-    // Divided difference of order + 2 positions, the new one first: derivative of that order over its factorial.
-    std::vector<double>        times       = {levels_[0].time + length};
-    std::vector<ControlPoints> differences = {x};
+    std::vector<double> times = {levels_[0].time + length};
     for (std::size_t i = 0; i <= order; ++i)
+      times.push_back(levels_[i].time);
+    double       sum = 0.;
+    Eigen::Index n   = 0;
+    for (std::size_t c = 0; c < x.size(); ++c)
       {
-        times.push_back(levels_[i].time);
-        differences.push_back(levels_[i].x);
+        // Divided difference of order + 2 positions, the new one first: derivative of that order over its factorial.
+        std::vector<ControlPoints> differences = {x[c]};
+        for (std::size_t i = 0; i <= order; ++i)
+          differences.push_back(levels_[i].x[c]);
+        for (std::size_t k = 1; k <= order + 1; ++k)
+          for (std::size_t i = 0; i + k <= order + 1; ++i)
+            differences[i] = (differences[i] - differences[i + 1]) / (times[i] - times[i + k]);
+        sum += differences[0].squaredNorm();
+        n += x[c].rows();
       }
-    for (std::size_t k = 1; k <= order + 1; ++k)
-      for (std::size_t i = 0; i + k <= order + 1; ++i)
-        differences[i] = (differences[i] - differences[i + 1]) / (times[i] - times[i + k]);
-
     const double omega  = length / (times[1] - times[2]);
     const double weight = order == 1 ? length * length : (1. + omega) * (1. + omega) / (omega * (1. + 2. * omega)) * length * length * length;
-    return weight * differences[0].norm() / std::sqrt(double(x.rows()));
+    return weight * std::sqrt(sum / n);
   }
 
 
-  ControlPoints
+  ShellFields
   StepHistory::at(const double time) const
   {
-    ControlPoints x = ControlPoints::Zero(levels_[0].x.rows(), 3);
+    ShellFields x;
+    for (const ControlPoints &last : levels_[0].x)
+      x.push_back(ControlPoints::Zero(last.rows(), 3));
     for (const Level &level : levels_)
       {
         double weight = 1.;
         for (const Level &other : levels_)
           if (other.time != level.time)
             weight *= (time - other.time) / (level.time - other.time);
-        x += weight * level.x;
+        for (std::size_t c = 0; c < x.size(); ++c)
+          x[c] += weight * level.x[c];
       }
     return x;
   }

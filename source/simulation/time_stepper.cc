@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: one step in time, implicit or explicit, with its rejections.
 
+#include <deal.II/base/mpi.h>
+
 #include <tanktread/base/exceptions.h>
 #include <tanktread/simulation/time_stepper.h>
 
@@ -12,21 +14,20 @@
 
 namespace tanktread
 {
-  TimeStepper::TimeStepper(const TimeParameters &parameters, const TimeCoupling coupling, const double end_time, NewtonSolver &solver, Log &log)
+  TimeStepper::TimeStepper(const TimeParameters &parameters, const TimeCoupling coupling, const double end_time, Scene &scene, StepMemory &memory, Log &log)
     : parameters_(parameters)
     , coupling_(coupling)
     , end_time_(end_time)
-    , solver_(solver)
+    , scene_(scene)
+    , memory_(memory)
     , log_(log)
-    , history_(parameters)
-    , next_length_(history_.first_length())
   {}
 
 
   void
-  TimeStepper::start(const double time, const ControlPoints &x)
+  TimeStepper::start(const double time, const ShellFields &x)
   {
-    history_.add(time, x);
+    memory_.history.add(time, x);
   }
 
 
@@ -34,8 +35,8 @@ namespace tanktread
   TimeStepper::levels(State &state)
   {
     std::vector<State *> result = {&state};
-    if (previous_state_)
-      result.push_back(previous_state_.get());
+    if (memory_.previous_state)
+      result.push_back(memory_.previous_state.get());
     return result;
   }
 
@@ -43,49 +44,44 @@ namespace tanktread
   void
   TimeStepper::forget_flow()
   {
-    previous_state_.reset();
+    memory_.previous_state.reset();
   }
 
 
   StepResult
-  TimeStepper::step(State &state, const double time)
+  TimeStepper::step(State &state, const double time, const bool mesh_is_new)
   {
-    return coupling_ == TimeCoupling::explicit_euler ? explicit_step(state, time) : implicit_step(state, time);
+    return coupling_ == TimeCoupling::explicit_euler ? explicit_step(state, time) : implicit_step(state, time, mesh_is_new);
   }
 
 
   State
-  TimeStepper::extrapolated(const State &state, const double length) const
+  TimeStepper::guess(const State &state, const double length) const
   {
-    State guess = state;
-    if (!previous_state_)
-      return guess;
-    const double ratio = length / previous_length_;
-    solver_.carry_pressure(guess);
-    solver_.carry_pressure(*previous_state_);
-    guess.x += ratio * (state.x - previous_state_->x);
-    guess.force += ratio * (state.force - previous_state_->force);
-    guess.pressure_jump += ratio * (state.pressure_jump - previous_state_->pressure_jump);
-    guess.fluid.sadd(1. + ratio, -ratio, previous_state_->fluid);
-    return guess;
+    if (!memory_.previous_state)
+      return state;
+    State now = state;
+    scene_.level().carry_pressure(now);
+    scene_.level().carry_pressure(*memory_.previous_state);
+    return extrapolated(now, *memory_.previous_state, length / memory_.previous_length);
   }
 
 
   NewtonReport
-  TimeStepper::try_step(const State &state, const double length, const bool from_extrapolation, State &next)
+  TimeStepper::try_step(const State &state, const double time, const double length, const bool from_extrapolation, State &next)
   {
-    const ImplicitStep step = history_.step(length);
-    next                    = from_extrapolation ? extrapolated(state, length) : state;
+    const ShellSteps steps = memory_.history.step(length);
+    next                   = from_extrapolation ? guess(state, length) : state;
     FluidVector uhat;
-    if (solver_.has_inertia())
+    if (scene_.level().has_inertia())
       {
-        const std::array<double, 2> weights = history_.weights(length);
+        const std::array<double, 2> weights = memory_.history.weights(length);
         uhat                                = state.fluid.block(velocity_block);
         uhat *= weights[0];
         if (weights[1] != 0.)
-          uhat.add(weights[1], previous_state_->fluid.block(velocity_block));
+          uhat.add(weights[1], memory_.previous_state->fluid.block(velocity_block));
       }
-    const NewtonReport report = solver_.solve(next, step.xhat, step.tau, &uhat);
+    const NewtonReport report = scene_.solver().solve(next, {steps.xhat, steps.tau, time + length, &uhat});
     if (!report.converged)
       {
         std::ostringstream text;
@@ -99,54 +95,84 @@ namespace tanktread
   }
 
 
-  bool
-  TimeStepper::accept_step(State &state, const double time, const double length, State &next)
+  std::string
+  TimeStepper::attempts(const State &state, const double time, const bool first_attempt, StepResult &result, State &next)
   {
-    const double error = history_.local_error(length, next.x), factor = history_.length_factor(error), tolerance = parameters_.tolerance;
-    next_length_ = std::min(parameters_.step, factor * length);
-    if (tolerance > 0. && error > 2. * tolerance && length > 1e-3 * parameters_.step)
+    std::string failure;
+    for (const bool from_extrapolation : {true, false})
       {
-        std::ostringstream text;
-        text << "Step of length " << length << " repeated: its local error is " << error << ", Time/Tolerance " << tolerance << '.';
-        log_.line(text.str());
-        return false;
+        if (from_extrapolation && !(memory_.previous_state && first_attempt))
+          continue;
+        const NewtonReport report = try_step(state, time, result.length, from_extrapolation, next);
+        result.newton_iterations += report.newton_iterations;
+        result.linear_iterations += report.linear_iterations;
+        if (report.converged)
+          {
+            failure = scene_.refusal(next);
+            if (!failure.empty())
+              log_.line("Step of length " + std::to_string(result.length) + " rejected: " + failure + '.');
+            return failure;
+          }
+        failure = report.message;
       }
-    previous_state_  = std::make_unique<State>(std::move(state));
-    previous_length_ = length;
-    state            = std::move(next);
-    history_.add(time + length, state.x);
+    return failure;
+  }
+
+
+  bool
+  TimeStepper::accept_step(State &state, const double time, const double length, const double shortest, State &next)
+  {
+    // One answer for all ranks: logarithms and powers may differ in the last digit between kinds of processors.
+    const double error  = dealii::Utilities::MPI::broadcast(scene_.elasticity().communicator(), memory_.history.local_error(length, positions(next)), 0);
+    const double factor = dealii::Utilities::MPI::broadcast(scene_.elasticity().communicator(), memory_.history.length_factor(error), 0);
+    memory_.next_length = std::min(parameters_.step, factor * length);
+    if (parameters_.tolerance > 0. && error > 2. * parameters_.tolerance)
+      {
+        const bool         repeats = memory_.next_length >= shortest;
+        std::ostringstream text;
+        text << "Step of length " << length << (repeats ? " repeated" : " accepted, since there is no shorter one, though") << ": its local error is " << error
+             << ", Time/Tolerance " << parameters_.tolerance << '.';
+        log_.line(text.str());
+        if (repeats)
+          return false;
+        memory_.next_length = shortest;
+      }
+    memory_.previous_state  = std::make_unique<State>(std::move(state));
+    memory_.previous_length = length;
+    state                   = std::move(next);
+    memory_.history.add(time + length, positions(state));
     return true;
   }
 
 
   StepResult
-  TimeStepper::implicit_step(State &state, const double time)
+  TimeStepper::implicit_step(State &state, const double time, const bool mesh_is_new)
   {
     StepResult   result;
     State        next;
-    const double wanted = std::min(next_length_, end_time_ - time), shortest = std::min(wanted, 1e-3 * parameters_.step);
+    const double wanted = std::min(memory_.next_length, end_time_ - time), shortest = std::min(wanted, 1e-3 * parameters_.step);
     bool         first_attempt = true;
     std::string  failure;
     for (result.length = wanted; result.length >= shortest;)
       {
-        NewtonReport report;
-        for (const bool from_extrapolation : {true, false})
-          if (!report.converged && (!from_extrapolation || (previous_state_ && first_attempt)))
-            {
-              report = try_step(state, result.length, from_extrapolation, next);
-              result.newton_iterations += report.newton_iterations;
-              result.linear_iterations += report.linear_iterations;
-            }
+        failure       = attempts(state, time, first_attempt, result, next);
         first_attempt = false;
-        if (!report.converged)
+        if (failure.empty() && scene_.coupling().jumps().n_coarse_cut_cells() > 0)
           {
-            failure = report.message;
-            result.length *= 0.5;
+            if (!mesh_is_new)
+              {
+                result.beyond_mesh = positions(next);
+                return result;
+              }
+            failure = "the shells leave the finest cells of the fluid";
+            log_.line("Step of length " + std::to_string(result.length) + " rejected: " + failure + '.');
           }
-        else if (accept_step(state, time, result.length, next))
+        if (!failure.empty())
+          result.length *= 0.5;
+        else if (accept_step(state, time, result.length, shortest, next))
           return result;
         else
-          result.length = next_length_;
+          result.length = memory_.next_length;
       }
     std::ostringstream message;
     message << "No time step between " << shortest << " and " << wanted << " could be solved; the last attempt: " << failure << '.';
@@ -173,21 +199,26 @@ namespace tanktread
   {
     StepResult result;
     result.length              = std::min(parameters_.step, end_time_ - time);
-    const ControlPoints change = result.length * solver_.shell_velocity(state);
-    check_explicit_step(change, result.length);
-    State next = state;
-    next.x += change;
+    const ShellFields velocity = scene_.level().shell_velocity(state);
+    State             next     = state;
+    for (std::size_t c = 0; c < velocity.size(); ++c)
+      {
+        check_explicit_step(result.length * velocity[c], result.length);
+        next.capsules[c].x += result.length * velocity[c];
+      }
     try
       {
-        result.linear_iterations = solver_.solve_flow(next);
+        result.linear_iterations = scene_.solver().solve_flow(next, time + result.length);
       }
     catch (const NumericalError &error)
       {
         throw NumericalError(std::string("The explicit coupling failed at this step: ") + error.what() +
                              " Take a smaller Time/Step or Solver/Coupling = implicit.");
       }
+    if (const std::string reason = scene_.refusal(next); !reason.empty())
+      throw NumericalError("The explicit coupling failed at this step: " + reason + ". Take a smaller Time/Step or Solver/Coupling = implicit.");
     state = std::move(next);
-    history_.add(time + result.length, state.x);
+    memory_.history.add(time + result.length, positions(state));
     return result;
   }
 } // namespace tanktread

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Part of Tanktread: what the shell contributes to the Newton system.
+// Part of Tanktread: what the shells contribute to the Newton system.
 
 #include <deal.II/base/numbers.h>
 
@@ -8,6 +8,7 @@
 #include <tanktread/surface/surface_operators.h>
 
 #include <cmath>
+#include <utility>
 
 namespace tanktread
 {
@@ -23,53 +24,71 @@ namespace tanktread
       Z.coeffs() += c1 * laplace_beltrami(surface, x).coeffs();
       return Z;
     }
+
+
+    /** At the middle of a shell. */
+    Eigen::Matrix3d
+    gradient_about(const UndisturbedFlow &flow, const ControlPoints &x)
+    {
+      const Eigen::RowVector3d   centre   = x.colwise().mean();
+      const dealii::Tensor<2, 3> gradient = flow.gradient({centre[0], centre[1], centre[2]});
+      Eigen::Matrix3d            result;
+      for (unsigned int c = 0; c < 3; ++c)
+        for (unsigned int d = 0; d < 3; ++d)
+          result(c, d) = gradient[c][d];
+      return result;
+    }
   } // namespace
 
 
-  LinearisedShell::LinearisedShell(const DistributedShell   &shell,
-                                   const SubdivisionSurface &surface,
-                                   const Coupling           &coupling,
-                                   const State              &state,
-                                   const ControlPoints      &velocity,
-                                   const VelocityGradients  &velocity_gradient,
-                                   const Linearisation      &choice,
-                                   ImplicitShell            &implicit_shell)
-    : coupling_(coupling)
-    , implicit_shell_(implicit_shell)
+  LinearisedShell::LinearisedShell(const DistributedShell                          &elasticity,
+                                   const Coupling                                  &coupling,
+                                   const unsigned int                               c,
+                                   const CapsuleState                              &state,
+                                   const std::shared_ptr<const ShellConfiguration> &shell,
+                                   const ControlPoints                             &velocity,
+                                   VelocityGradients                                velocity_gradient,
+                                   const Linearisation                             &choice)
+    : capsule_(shell->capsule())
+    , shell_(shell)
     , tau_(choice.tau)
     , pressure_jump_(state.pressure_jump)
-    , points_move_(choice.derivatives == PointDerivatives::complete && choice.tau > 0.)
-    , volume_gradient_(tanktread::volume_gradient(surface, state.x))
-    , density_(coupling.density((choice.derivatives == PointDerivatives::complete ? 1. : 0.) * (state.force + state.pressure_jump * volume_gradient_)))
-    , normal_field_(coupling.density(volume_gradient_))
+    , density_(choice.derivatives == PointDerivatives::complete ? capsule_.density(state.force + state.pressure_jump * shell->volume_gradient()) :
+                                                                  ControlPoints::Zero(state.x.rows(), 3))
   {
     if (tau_ == 0.)
       return;
-    volume_hessian_ = tanktread::volume_hessian(surface, state.x);
-    SparseMatrix gamma;
-    coupling.gradient_matrix(velocity_gradient, gamma);
-    flux_gradient_ = nodal(gamma.transpose() * flat(normal_field_) + volume_hessian_ * flat(velocity));
+    const SparseMatrix &volume_hessian = shell->volume_hessian();
+    SparseMatrix        gamma;
+    velocity_gradient += coupling.transfer(c).gradients(choice.flow, *shell);
+    coupling.gradient_matrix(c, velocity_gradient, gamma);
+    flux_gradient_ = nodal(gamma.transpose() * flat(shell->normal_field()) + volume_hessian * flat(velocity));
 
     ControlPoints force;
-    shell.force_and_tangent(state.x, force, stiffness_, choice.tangent);
+    elasticity.force_and_tangent(state.x, force, stiffness_, choice.tangent);
     if (choice.tangent == Tangent::exact)
-      stiffness_.coeffs() -= state.pressure_jump * volume_hessian_.coeffs();
-    if (!implicit_shell.serves(tau_))
-      implicit_shell.renew(inverse_mobility(surface, state.x, choice.h, choice.viscosity), choice.flow_gradient, stiffness_, tau_);
+      stiffness_.coeffs() -= state.pressure_jump * volume_hessian.coeffs();
 
     gamma.coeffs() *= tau_;
     if (std::abs(state.volume_shift) <= choice.h / (2. * dealii::numbers::PI))
-      gamma.coeffs() += state.volume_shift * volume_hessian_.coeffs();
-    motion_.emplace(coupling, std::move(gamma), choice.accuracy);
-    volume_response_ = motion_->solve(volume_gradient_);
+      gamma.coeffs() += state.volume_shift * volume_hessian.coeffs();
+    motion_.emplace(capsule_, std::move(gamma), choice.accuracy);
+    volume_response_ = motion_->solve(shell->volume_gradient());
+  }
+
+
+  ImplicitOperator
+  LinearisedShell::implicit_operator(const Linearisation &choice) const
+  {
+    return {inverse_mobility(capsule_.surface(), shell_->x(), choice.h, choice.viscosity), stiffness_, gradient_about(choice.flow, shell_->x())};
   }
 
 
   void
   LinearisedShell::correct_volume(ControlPoints &dx, const double r_V) const
   {
-    const double excess = volume_gradient_.cwiseProduct(dx).sum() + r_V;
-    dx -= excess / volume_gradient_.cwiseProduct(volume_response_).sum() * volume_response_;
+    const double excess = volume_gradient().cwiseProduct(dx).sum() + r_V;
+    dx -= excess / volume_gradient().cwiseProduct(volume_response_).sum() * volume_response_;
   }
 
 
@@ -89,7 +108,7 @@ namespace tanktread
   {
     if (tau_ == 0.)
       return ControlPoints::Zero(r_x.rows(), 3);
-    ControlPoints dx = motion_->solve(-(coupling_.mass() * r_x));
+    ControlPoints dx = motion_->solve(-(capsule_.mass() * r_x));
     correct_volume(dx, r_V);
     return dx;
   }
@@ -98,7 +117,7 @@ namespace tanktread
   double
   LinearisedShell::flux(const ControlPoints &velocity_moments, const ControlPoints &dx) const
   {
-    double result = normal_field_.cwiseProduct(velocity_moments).sum();
+    double result = shell_->normal_field().cwiseProduct(velocity_moments).sum();
     if (tau_ != 0.)
       result += flux_gradient_.cwiseProduct(dx).sum();
     return result;
@@ -110,8 +129,8 @@ namespace tanktread
   {
     if (tau_ == 0.)
       return 0.;
-    const ControlPoints row = motion_->times(dx) - tau_ * velocity_moments + coupling_.mass() * r_x;
-    return normal_field_.cwiseProduct(row).sum() / normal_field_.cwiseProduct(volume_gradient_).sum();
+    const ControlPoints row = motion_->times(dx) - tau_ * velocity_moments + capsule_.mass() * r_x;
+    return shell_->normal_field().cwiseProduct(row).sum() / shell_->normal_square();
   }
 
 
@@ -125,19 +144,62 @@ namespace tanktread
 
 
   ControlPoints
-  LinearisedShell::damped(const ControlPoints &force) const
-  {
-    if (tau_ == 0.)
-      return force;
-    return implicit_shell_.damped(force);
-  }
-
-
-  ControlPoints
   LinearisedShell::force_change(const ControlPoints &dG, const ControlPoints &dx) const
   {
     if (tau_ == 0.)
       return dG;
-    return dG - pressure_jump_ * nodal(volume_hessian_ * flat(dx));
+    return dG - pressure_jump_ * nodal(shell_->volume_hessian() * flat(dx));
+  }
+
+
+  LinearisedShells::LinearisedShells(const DistributedShell        &elasticity,
+                                     const Coupling                &coupling,
+                                     const State                   &state,
+                                     const ShellConfigurations     &shells,
+                                     const ShellFields             &velocities,
+                                     std::vector<VelocityGradients> velocity_gradients,
+                                     const Linearisation           &choice,
+                                     ImplicitShells                &implicit_shells)
+    : coupling_(coupling)
+    , implicit_shells_(implicit_shells)
+    , tau_(choice.tau)
+    , points_move_(choice.derivatives == PointDerivatives::complete && choice.tau > 0.)
+  {
+    shells_.reserve(shells.size());
+    for (unsigned int c = 0; c < shells.size(); ++c)
+      shells_.emplace_back(elasticity, coupling, c, state.capsules[c], shells[c], velocities[c], std::move(velocity_gradients[c]), choice);
+    if (tau_ == 0. || implicit_shells.serves(tau_))
+      return;
+    std::vector<ImplicitOperator> operators;
+    for (const LinearisedShell &shell : shells_)
+      operators.push_back(shell.implicit_operator(choice));
+    implicit_shells.renew(std::move(operators), tau_);
+  }
+
+
+  ShellFields
+  LinearisedShells::displacements(const ShellFields &velocity_moments) const
+  {
+    ShellFields result;
+    for (unsigned int c = 0; c < size(); ++c)
+      result.push_back(shells_[c].displacement(velocity_moments[c]));
+    return result;
+  }
+
+
+  ControlPoints
+  LinearisedShells::damped(const unsigned int c, const ControlPoints &force) const
+  {
+    return tau_ == 0. ? force : implicit_shells_.damped(c, force);
+  }
+
+
+  ShellFields
+  LinearisedShells::densities() const
+  {
+    ShellFields result;
+    for (const LinearisedShell &shell : shells_)
+      result.push_back(shell.density());
+    return result;
   }
 } // namespace tanktread

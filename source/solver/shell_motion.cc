@@ -25,8 +25,8 @@ namespace tanktread
   } // namespace
 
 
-  ShellMotion::ShellMotion(const Coupling &coupling, SparseMatrix N, const double accuracy)
-    : coupling_(coupling)
+  ShellMotion::ShellMotion(const Capsule &capsule, SparseMatrix N, const double accuracy)
+    : capsule_(&capsule)
     , N_(std::move(N))
     , n_terms_(terms_needed(accuracy))
   {
@@ -34,7 +34,7 @@ namespace tanktread
       return;
     SparseMatrix A = N_;
     A.coeffs() *= -1.;
-    add_for_three_components(coupling.mass(), A);
+    add_for_three_components(capsule.mass(), A);
     factors_ = std::make_unique<BlockFactorisation>();
     factors_->factorise(A, "The motion of the shell in the velocity gradient, for this time step,");
   }
@@ -46,11 +46,11 @@ namespace tanktread
     // n terms leave the error (M^{-1} N)^n A^{-1} moments. A random field has all wave lengths, the roughest above
     // all; the margin is for smooth ones, on which more than twice the error was seen.
     std::minstd_rand random(1);
-    ControlPoints    error  = ControlPoints::NullaryExpr(coupling_.mass().rows(), 3, [&]() { return double(random()) / std::minstd_rand::max() - 0.5; });
+    ControlPoints    error  = ControlPoints::NullaryExpr(capsule_->mass().rows(), 3, [&]() { return double(random()) / std::minstd_rand::max() - 0.5; });
     const double     wanted = 0.3 * accuracy * error.norm();
     unsigned int     n      = 0;
     for (; n <= max_terms && !(error.norm() <= wanted); ++n)
-      error = coupling_.density(tanktread::times(N_, error));
+      error = capsule_->density(tanktread::times(N_, error));
     return std::max(n, 1u);
   }
 
@@ -63,9 +63,9 @@ namespace tanktread
         const Eigen::VectorXd solution = factors_->solve(flat(moments));
         return Eigen::Map<const ControlPoints>(solution.data(), moments.rows(), 3);
       }
-    ControlPoints result = coupling_.density(moments);
+    ControlPoints result = capsule_->density(moments);
     for (unsigned int k = 1; k < n_terms_; ++k)
-      result = coupling_.density(moments + tanktread::times(N_, result));
+      result = capsule_->density(moments + tanktread::times(N_, result));
     return result;
   }
 
@@ -73,6 +73,6 @@ namespace tanktread
   ControlPoints
   ShellMotion::times(const ControlPoints &dx) const
   {
-    return coupling_.mass() * dx - tanktread::times(N_, dx);
+    return capsule_->mass() * dx - tanktread::times(N_, dx);
   }
 } // namespace tanktread

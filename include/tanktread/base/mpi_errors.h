@@ -24,6 +24,26 @@ namespace tanktread
   void
   on_all_ranks(MPI_Comm communicator, const std::function<void()> &work);
 
+  /** A place where ranks that have failed find out whether all of them have, so that they may go on together, or whether the others wait for them in some collective call. */
+  class Meeting
+  {
+  public:
+    /** Collective. */
+    explicit Meeting(MPI_Comm communicator);
+    ~Meeting();
+    Meeting(const Meeting &) = delete;
+    Meeting &
+    operator=(const Meeting &) = delete;
+
+    /** True when all ranks call this function within `patience` seconds. */
+    bool
+    all_come(double patience = 10.) const;
+
+  private:
+    MPI_Comm     communicator_;    // of its own: the ranks that have not failed may be inside a collective call of the other one
+    mutable bool missed_ = false; // then it must not be freed, which takes all ranks
+  };
+
   /**
    * Runs `work` on all ranks and returns the exit code: 0 when it comes back, 1 for InputError, 2 for every other exception, whose message is written to
    * std::cerr. Usually all ranks fail alike: then the first one writes and all return. When the others have not failed within `patience` seconds they

@@ -1,33 +1,25 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Part of Tanktread: the kink of the velocity and the jump of the pressure at the shell, in the cells that it cuts.
+// Part of Tanktread: the kink of the velocity and the jump of the pressure at one shell, in the cells that it cuts.
 
 #ifndef tanktread_coupling_jump_enrichment_h
 #define tanktread_coupling_jump_enrichment_h
 
-#include <tanktread/base/vector4.h>
+#include <tanktread/coupling/cut_cell_forms.h>
 #include <tanktread/coupling/surface_distance.h>
 #include <tanktread/coupling/transposed_part.h>
-#include <tanktread/fluid/cut_cell.h>
-#include <tanktread/fluid/point_interpolation.h>
+#include <tanktread/coupling/vertex_averages.h>
+#include <tanktread/coupling/vertex_sides.h>
+#include <tanktread/fluid/undisturbed_flow.h>
+
+#include <memory>
 
 namespace tanktread
 {
-  /** On which side of the shell the pressure's owned unknowns lie: -1 inside, 1 outside, 0 where that is not known, farther from the shell than a cell. Empty: nowhere. */
-  using VertexSides = std::vector<signed char>;
-
-  /** Forces of the shell as the enrichment needs them. */
-  struct ExtendedForces
-  {
-    std::vector<double>           at_points;     // force times area at the local points, 3 numbers each
-    dealii::AlignedVector<double> at_vertices;   // f_t and f_n at the vertices of this rank's cells
-    bool                          whole = false; // with all that does not depend on the forces, see JumpEnrichment::complete()
-  };
-
   /** Another viscosity inside, and the undisturbed flow that it disturbs. */
   struct ViscosityContrast
   {
-    double          ratio         = 1.; // inside over outside
-    Eigen::Matrix3d flow_gradient = Eigen::Matrix3d::Zero();
+    double          ratio = 1.; // inside over outside
+    UndisturbedFlow flow;
   };
 
   /**
@@ -37,18 +29,17 @@ namespace tanktread
    *     psi = sum_a q_a N_a (chi - i_a),   q_a = phi(x_a) f_t(x_a)/mu,      eta = sum_j eta_j M_j (chi - i_j),   eta_j = -f_n(x_j)
    *
    * on the cells that the shell cuts, zero elsewhere: chi is one inside, i_a = chi(x_a), phi the signed distance. These are functions with those jumps minus their nodal interpolants, so they
-   * vanish on all faces that the shell does not cut. f at a node is the average, weighted by the mesh's linear hat functions, of the forces at the surface's points. With the linear maps
+   * vanish on all faces that the shell does not cut. f at a node is the average of VertexAverages. With the linear maps
    * f -> psi, eta the stationary value of 1/2 a(u, u) - (p, div u) - <f, u> gives both directions at once:
    *
    *     load        R f = (<f, v> - a(psi, v) + (eta, div v),  (q, div psi))
    *     velocity    U   = R^T (u_h, p_h) + Q f,      <g, Q f> = <g, psi_f> + <f, psi_g> - a(psi_f, psi_g) + (eta_f, div psi_g) + (eta_g, div psi_f)
    *
-   * so the power f . U is what the flow u_h + psi dissipates, exactly. This class adds what is more than <f, v> and its transpose. A constant pressure is removed from p_h and from the load, of which it would know
-   * by errors of the quadrature only.
+   * This class adds what is more than <f, v> and its transpose, for one shell and its own forces; what the forces of one shell do in cells that another one cuts is in ShellPairs.
    *
    * Viscosity mu = 1 outside and lambda inside: the conditions at the shell are then
    *
-     *     [du/dn] = -2/(1 + lambda) (f_t + g_t),   [p] = f_n + g_n,   g = (1 - lambda) (G + G^T) n
+   *     [du/dn] = -2/(1 + lambda) (f_t + g_t),   [p] = f_n + g_n,   g = (1 - lambda) (G + G^T) n
    *
    * with G the mean of the velocity gradients on both sides, the undisturbed flow's included. So f + g takes the place of f in psi (with mu the mean of the viscosities) and eta, g being that of the flow before: a
    * fixed point. It is no force and no unknown: what it contributes is constant in the directions R f and Q f, like the load -2 ((mu - 1) eps(u_inf), eps(v)) of the undisturbed flow.
@@ -56,149 +47,115 @@ namespace tanktread
   class JumpEnrichment
   {
   public:
-    /** Keeps `space` by reference. Collective. */
-    explicit JumpEnrichment(const TaylorHoodSpace &space, const ViscosityContrast &contrast = {});
+    /** Keeps `space` by reference. @param vertices linear nodes with four components on its mesh. */
+    JumpEnrichment(const TaylorHoodSpace &space, std::shared_ptr<const NodeSpace> vertices, const ViscosityContrast &contrast);
 
     /**
      * Computes everything that depends on where the shell is.
      *
-     * @param patches about the points that `points` has been given, which is kept by reference. @param area_weights area that each stands for. Collective.
+     * @param points of all shells, kept by reference; those of this one are `range`, the first of them has the number `first`. Collective. Throws NumericalError if the shell is so near to a periodic image of itself that a node of
+     * the mesh is near to both.
      */
     void
-    move(std::vector<QuadraticPatch> patches, const Eigen::VectorXd &area_weights, const PointInterpolation &points);
+    move(const ShellConfiguration &shell, const PointInterpolation &points, const PointRange &range, unsigned int first);
 
-    /** Makes forces.at_vertices from forces.at_points, in the order of `points`. Collective. */
+    /** Adds g to forces at the vertices; with one viscosity nothing. */
     void
-    extend(ExtendedForces &forces) const;
-
-    /** Adds g and marks the forces as whole, the undisturbed flow included; with one viscosity nothing. */
-    void
-    complete(ExtendedForces &forces) const;
+    complete(VertexArray &forces) const;
 
     /**
      * Makes g that of the flow with these gradients.
      *
-     * @param gradients of u_inf + u_h at the local points, 9 numbers each, entry 3 c + d being du_c/dx_d. @param forces whole ones. Collective.
+     * @param gradients of u_inf + u_h at the points of all shells on this rank, 9 numbers each, entry 3 c + d being du_c/dx_d. @param forces whole ones at the vertices. Collective.
      */
     void
-    update_viscous_forces(const double *gradients, const ExtendedForces &forces);
+    update_viscous_forces(const std::vector<double> &gradients, const VertexArray &forces);
 
-    /** 2 ((mu - 1) eps(u_inf), eps(psi)). Collective. */
+    /** g of the flow before, for a checkpoint or a test. */
+    const VertexArray &
+    viscous_forces() const
+    {
+      return viscous_forces_;
+    }
+
+    /** 2 ((mu - 1) eps(u_inf), eps(psi)) in the cells of this rank. */
     double
-    undisturbed_work(const ExtendedForces &forces) const;
+    undisturbed_work(const VertexArray &forces) const;
 
-    /** load += factor R f without <f, v>. Collective. */
+    /** Adds factor (R f without <f, v>). @param load_u velocity block with its ghosts. @param load_p full array. */
     void
-    add_load(const ExtendedForces &forces, double factor, FluidBlockVector &load) const;
+    add_load(const VertexArray &forces, double factor, double *load_u, double *load_p) const;
 
-    /** values += (R^T fields without the values of u_h) + Q forces at the local points, the latter unless null. Collective. */
+    /** dual += what R^T without the values of u_h makes of a flow at the vertices. @param u velocity block with its ghosts. @param p full array. */
     void
-    add_velocities(const FluidBlockVector &fields, const ExtendedForces *forces, std::vector<double> &values) const;
+    add_field_response(const double *u, const double *p, VertexArray &dual) const;
 
-    /** Sides since move(). */
+    /**
+     * dual, values += Q of this shell's own forces.
+     *
+     * @param at_points force times area at the points of all shells, as `values`. @param whole with what does not depend on the forces, see complete().
+     */
+    void
+    add_self_response(const std::vector<double> &at_points, const VertexArray &forces, bool whole, VertexArray &dual, std::vector<double> &values) const;
+
+    const VertexAverages &
+    averages() const
+    {
+      return averages_;
+    }
     const VertexSides &
     sides() const
     {
       return sides_;
     }
 
-    /**
-     * Adds to p_h at the vertices that have changed sides since `sides` what the pressure jumps there, (i_new - i_old) eta_j: the nodal values of p_h are those of the pressure, which a vertex that
-     * the shell has passed finds on the other side. Afterwards `sides` is sides(). Collective.
-     */
+    /** See tanktread::carry_pressure(); afterwards `sides` is sides(). Nothing but that if it was empty. Collective. */
     void
-    carry_pressure(const ExtendedForces &forces, VertexSides &sides, FluidBlockVector &fields) const;
+    carry_pressure(const VertexArray &forces, VertexSides &sides, FluidBlockVector &fields) const;
 
-    unsigned int
-    n_cut_cells() const
+    /** A cell that the shell cuts. */
+    struct CutCell
     {
-      return cut_cells_.size();
+      unsigned int                        cell, group; // the latter: its points, or VertexAverages::no_points
+      NodeDistances                       nodes;
+      CutCellForms                        forms;
+      std::array<std::array<float, 4>, 8> stress; // undisturbed_stress(), zero with one viscosity
+    };
+    const std::vector<CutCell> &
+    cut_cells() const
+    {
+      return cut_cells_;
+    }
+    /** How often the shell cuts cells of this rank that are not finest ones, in which kink and jump are missing. */
+    unsigned int
+    n_coarse_cut_cells() const
+    {
+      return n_coarse_cut_cells_;
     }
 
   private:
-    /** f_t and, in the fourth place, f_n at the vertices of a cell; or what is dual to them. */
-    using VertexForces = std::array<Vector4, 8>;
-
-    /** Everything linear in the forces at the vertices, for a cell of any size: q_a = phi(x_a) sum_v M_v(x_a) f_t,v has been put in. Vectors have four places, the last one zero. */
-    struct CutCell
-    {
-      unsigned int                                        cell, group; // the latter: its points, or no_points
-      std::array<std::array<float, 8>, 27>                laplace;     // [b][v]: a(N_b, psi_v), the same for all components
-      std::array<std::array<std::array<float, 4>, 8>, 27> pressure;    // [b][j]: (eta_j, grad N_b)
-      std::array<std::array<std::array<float, 4>, 8>, 8>  divergence;  // [j][v]: (M_j, grad psi_v)
-      std::array<std::array<float, 8>, 8>                 self;        // [v][w]: a(psi_v, psi_w)
-      std::array<std::array<std::array<float, 4>, 8>, 8>  self_mixed;  // [v][j]: (eta_j, grad psi_v)
-      std::array<std::array<float, 4>, 8>                 stress;      // [v]: 2 ((mu - 1) eps(u_inf), eps(psi_v))
-    };
-    static constexpr unsigned int no_points = static_cast<unsigned int>(-1);
-
-    /** Local points of one cell: point_order_[begin], ..., point_order_[end - 1]. */
-    struct PointGroup
-    {
-      unsigned int cell, begin, end;
-    };
-
-    /** Signs and distances of a cut cell's nodes, in a. */
-    struct NodeDistances
-    {
-      std::array<double, 27> phi;
-      std::array<bool, 27>   inside;
-    };
-
-    void
-    group_points();
     void
     find_cut_cells(const SurfaceDistance &distance);
     void
-    set_sides(const std::vector<double> &phi);
+    refuse_own_image(unsigned int n_conflicts) const;
     void
-    add_cut_cell(unsigned int cell, const NodeDistances &nodes);
-    /** What another viscosity inside needs in addition. @param q amplitudes at the nodes for unit values at the vertices. */
+    add_cut_cell(unsigned int cell, const dealii::Point<3> &centre, const NodeDistances &nodes);
+    /** psi and, with two viscosities, its slopes at the points of a cut cell. */
     void
-    add_viscous_part(CutCell                                     &cut,
-                     const NodeDistances                         &nodes,
-                     const PartialCellMatrices                   &in,
-                     const GradientProducts                      &products,
-                     const std::array<std::array<double, 8>, 27> &q);
-    void
-    set_weights(const Eigen::VectorXd &area_weights);
+    set_point_values(const CutCell &cut, const NodeAmplitudes &q);
 
-    /** Of `values`, an array of extension_. */
-    VertexForces
-    vertex_values(const dealii::AlignedVector<double> &values, unsigned int cell) const;
-    void
-    add_vertex_values(unsigned int cell, const VertexForces &values) const;
-    /** Sums over cells and ranks become averages with the weights, known at all vertices of this rank's cells. */
-    void
-    average() const;
-    void
-    add_self_response(const CutCell &cut, const VertexForces &f, const ExtendedForces &forces, VertexForces &r, std::vector<double> &values) const;
-    void
-    add_field_response(const CutCell &cut, const double *u, const double *p, VertexForces &r) const;
-    /** Pressure of `fields` without its mean. */
-    void
-    load_pressure(const FluidBlockVector &fields) const;
-
-    const TaylorHoodSpace                &space_;
-    const ViscosityContrast               contrast_;
-    CellLocator                           locator_;
-    NodeSpace                             extension_;          // linear functions with four numbers a vertex
-    std::vector<double>                   pressure_integrals_; // of the pressure functions, owned ones
-    const PointInterpolation             *points_ = nullptr;
-    std::vector<CutCell>                  cut_cells_;
-    std::vector<TransposedPart>           transposed_;   // of each cut cell; none with one viscosity
-    std::vector<unsigned int>             nearby_cells_; // whose nodes' distances are known
-    VertexSides                           sides_;
-    std::vector<PointGroup>               groups_; // by cell, ascending
-    std::vector<unsigned int>             group_of_cell_;
-    std::vector<unsigned int>             point_order_;
-    std::vector<std::array<double, 8>>    hats_, psi_;     // of points, in that order: M_v, and psi_v on the shell (in cut cells)
-    std::vector<Vector4>                  normals_;        // in that order
-    std::vector<std::array<Vector4, 8>>   slopes_;         // of points, in that order: mean of grad psi_v on both sides, in cut cells; none with one viscosity
-    std::vector<double>                   areas_;          // of points, in that order; none with one viscosity
-    dealii::AlignedVector<double>         viscous_values_; // g_t and g_n at the vertices
-    std::vector<double>                   inverse_weights_;
-    mutable dealii::AlignedVector<double> extension_values_, pressure_values_;
+    const TaylorHoodSpace              &space_;
+    const ViscosityContrast             contrast_;
+    CellLocator                         locator_;
+    VertexAverages                      averages_;
+    std::vector<CutCell>                cut_cells_;
+    std::vector<TransposedPart>         transposed_;   // of each cut cell; none with one viscosity
+    std::vector<unsigned int>           nearby_cells_; // whose nodes' distances are known
+    unsigned int                        n_coarse_cut_cells_ = 0;
+    VertexSides                         sides_;
+    std::vector<std::array<double, 8>>  psi_;            // psi_v at the points, in the order of the averages
+    std::vector<std::array<Vector4, 8>> slopes_;         // mean of grad psi_v on both sides, in that order; none with one viscosity
+    VertexArray                         viscous_forces_; // g_t and g_n; empty with one viscosity
   };
 } // namespace tanktread
 

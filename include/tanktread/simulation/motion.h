@@ -47,10 +47,10 @@ namespace tanktread
   /**
    * Judges a series of samples in order of time by the rule of doc/theory.md, section 8.2: over the time after the first half turn of the marker, the shape turns if
    * theta covers half a turn or more, the material if delta does; swinging, tumbling and transition are material alone, shape alone and both. Steady means that D and theta / pi have
-   * changed by less than 0.001 in the last fifth of the run.
+   * changed by less than 0.001 in the last fifth of the run, or that the run has ended because the shape had stopped changing (`ended_steady`).
    */
   MotionSummary
-  motion_summary(const std::vector<MotionSample> &samples);
+  motion_summary(const std::vector<MotionSample> &samples, bool ended_steady = false);
 
   /** The word for a mode. */
   std::string

@@ -7,6 +7,7 @@
 #include <tanktread/fluid/fluid_mesh_parameters.h>
 #include <tanktread/shell/shell_parameters.h>
 #include <tanktread/simulation/output_parameters.h>
+#include <tanktread/simulation/placement_parameters.h>
 #include <tanktread/simulation/scene_parameters.h>
 #include <tanktread/simulation/time_stepping.h>
 #include <tanktread/solver/solver_parameters.h>
@@ -35,6 +36,7 @@ namespace tanktread
   {
     SceneParameters        scene;
     CapsuleShapeParameters capsule;
+    PlacementParameters    placement;
     ShellParameters        shell;
     ShellMeshParameters    shell_mesh;
     FluidMeshParameters    fluid_mesh;

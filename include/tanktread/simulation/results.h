@@ -5,92 +5,58 @@
 #define tanktread_simulation_results_h
 
 #include <tanktread/base/csv_writer.h>
-#include <tanktread/fluid/fluid.h>
-#include <tanktread/shell/shell.h>
 #include <tanktread/simulation/motion.h>
-#include <tanktread/simulation/particle_stress.h>
+#include <tanktread/simulation/observables.h>
 #include <tanktread/simulation/surface_vtu.h>
-#include <tanktread/solver/state.h>
-#include <tanktread/surface/surface_geometry.h>
-#include <tanktread/surface/triangle_mesh.h>
 
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace tanktread
 {
-  /** One row of history.csv. */
-  struct Observables
-  {
-    double           time = 0.;
-    InertiaEllipsoid ellipsoid{};
-    double           theta_over_pi = 0.; // inclination in units of pi; not a number while the section is round
-    double           volume = 0., volume_error = 0., area = 0.;
-    Shell::Energy    energy{};
-    double           dissipation      = 0.; // in the box, beyond that of the undisturbed flow
-    double           pressure_jump    = 0.;
-    double           theta_continuous = 0., alpha = 0., delta = 0.; // see PhaseAngles
-    Eigen::Matrix3d  stress = Eigen::Matrix3d::Zero();              // see particle_stress()
-    Rheology         rheology{};
-    double           step              = 0.;
-    unsigned int     newton_iterations = 0, linear_iterations = 0;
-    double           n_cells   = 0.;
-    double           wall_time = 0.;
-  };
-
-  /** The shell's fixed data that observables and pictures need; all kept by reference. */
-  struct ShellView
-  {
-    const TriangleMesh       &topology;
-    const SubdivisionSurface &surface;
-    const Shell              &shell;
-    double                    initial_volume;
-  };
-
-  /** Shape, energies and dissipation of a state. Collective. */
-  Observables
-  observe(const ShellView &shell, const Fluid &fluid, const State &state);
-
   /**
-   * history.csv (one row a step), contours.csv (cuts with the plane y = 0 at each field output and when asked for: time, x, z), shell_NNNN.vtu and fluid_NNNNN.pvtu with shell.pvd and
+   * history.csv (one row a step), contours.csv (cuts parallel to the plane y = 0 through the middle of the capsule at each field output and when
+   * asked for: time, x, z), both with _1, ..., _N in their names where there are N capsules; suspension.csv (all capsules together), shell_NNNN.vtu and fluid_NNNNN.pvtu with shell.pvd and
    * fluid.pvd, summary.csv at the end. The first rank writes all but the pieces of the fluid.
    */
   class Results
   {
   public:
     /** The folder must exist. What cannot be written on the first rank throws InputError on all. Collective, as are all members. */
-    Results(const std::string &folder, MPI_Comm communicator);
+    Results(const std::string &folder, unsigned int n_capsules, MPI_Comm communicator);
 
     void
-    add_history(const Observables &observables);
+    add_history(const StepObservables &step, const std::vector<CapsuleObservables> &capsules, const SuspensionObservables &suspension);
 
-    /** Writes shell, contour and fluid. `velocity`: of the control points, NP x 3. */
+    /** Writes shells, contours and fluid. `velocities`: of the control points. */
     void
-    add_fields(double time, const ShellView &shell, const ControlPoints &velocity, const Fluid &fluid, const State &state, double shear_rate);
+    add_fields(double time, Scene &scene, const State &state, const ShellFields &velocities);
 
-    /** The cut of the shell with control points x alone. */
+    /** The cuts of the shells with control points x alone. */
     void
-    add_contour(double time, const ShellView &shell, const ControlPoints &x);
+    add_contours(double time, const Capsule &capsule, const ShellFields &x);
 
-    /** summary.csv: lines "quantity,value", the first of them `outcome` with the word "done" or "failed". */
+    /** summary.csv: lines "quantity,value", the first of them `outcome` with the word "done", "steady" or "failed"; with several capsules the quantities of each have its number at their end. */
     void
-    write_summary(const std::string &outcome, const MotionSummary &summary) const;
+    write_summary(const std::string &outcome, const std::vector<MotionSummary> &capsules) const;
 
     /** The last good state of a run that failed: failed_shell.vtu. Returns the file's name. */
     std::string
-    write_failed(const ShellView &shell, const State &state) const;
+    write_failed(Scene &scene, const State &state) const;
 
   private:
     void
-    write_shell(const std::string &file, const ShellView &shell, const State &state, const ControlPoints &velocity) const;
+    write_shells(const std::string &file, const Capsule &capsule, const State &state, const ShellFields &velocities) const;
     void
-    write_contour(double time, const TriangleMesh &topology, const ControlPoints &x);
+    write_contours(double time, const TriangleMesh &topology, const ShellFields &x);
 
-    std::string                folder_;
-    MPI_Comm                   communicator_;
-    unsigned int               n_fields_ = 0;
-    std::unique_ptr<CsvWriter> history_, contours_; // on the first rank only
-    PvdFile                    shell_series_, fluid_series_;
+    std::string                             folder_;
+    MPI_Comm                                communicator_;
+    unsigned int                            n_capsules_, n_fields_ = 0;
+    std::vector<std::unique_ptr<CsvWriter>> histories_, contours_; // on the first rank only
+    std::unique_ptr<CsvWriter>              suspension_;           // likewise
+    PvdFile                                 shell_series_, fluid_series_;
   };
 } // namespace tanktread
 

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Part of Tanktread: one run from the initial shape to the end time.
+// Part of Tanktread: one run from the initial shapes to the end time.
 
 #ifndef tanktread_simulation_simulation_h
 #define tanktread_simulation_simulation_h
 
 #include <tanktread/base/log.h>
-#include <tanktread/base/timings.h>
 #include <tanktread/simulation/parameters.h>
-#include <tanktread/simulation/phase_angles.h>
 #include <tanktread/simulation/results.h>
+#include <tanktread/simulation/run_memory.h>
 #include <tanktread/simulation/time_stepper.h>
 
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace tanktread
@@ -32,52 +32,51 @@ namespace tanktread
     make_folder();
     void
     start();
-    void
+    /** Steps to the end. Returns the outcome: done or steady. */
+    std::string
     advance();
-    /** New mesh around the present shell, with a zero flow, or with those that inertia remembers. */
+    /** One step, on a mesh that it fits. */
+    StepResult
+    step();
+    /** New mesh around the present shells, and others if there are any, with a zero flow, or with those that inertia remembers. */
     void
-    refine_around_shell();
+    refine_around_shells(const std::vector<ShellFields> &others = {});
     /** The flow there, to start with or to extrapolate from: Stokes flow, or with inertia what has been carried over. Returns the linear iterations. */
     unsigned int
     flow_on_new_mesh();
+    /** Whether all shapes have hardly changed in three steps; the same on all ranks. */
     bool
-    is_steady(const InertiaEllipsoid &before, const InertiaEllipsoid &after, double length);
+    is_steady(double length);
     /** Whether something that happens at multiples of `interval` (0: always) is due; moves `next` to the next time. */
     bool
     is_due(double &next, double interval) const;
     void
     record(const StepResult &step, bool last);
+    /** Phase angles and samples of the motion. */
+    void
+    remember(std::vector<CapsuleObservables> &capsules);
     /** Contours asked for at times of the last step; not the present one if `but_now`. */
     void
     add_contours(double length, bool but_now);
-    /** Says how the capsule has moved, in the log and in summary.csv. */
+    void
+    log_step(const StepObservables &step, const std::vector<CapsuleObservables> &capsules);
+    /** Says how the capsules have moved, in the log and in summary.csv. */
     void
     summarise(const std::string &outcome);
+    double
+    rounding() const
+    {
+      return 1e-9 * parameters_.scene.end_time;
+    }
 
-    const Parameters            &parameters_;
-    MPI_Comm                     communicator_;
-    bool                         first_rank_;
-    Timings                      timings_;
-    Log                          log_;
-    FittedShape                  shape_;
-    SubdivisionSurface           surface_;
-    Shell                        shell_;
-    DistributedShell             distributed_shell_;
-    Fluid                        fluid_;
-    SubdivisionSurface           coupling_surface_;
-    Coupling                     coupling_;
-    ShellView                    view_;
-    UndisturbedFlow              flow_;
-    NewtonSolver                 solver_;
-    TimeStepper                  stepper_;
-    State                        state_;
-    double                       time_    = 0.;
-    unsigned int                 n_steps_ = 0, n_quiet_steps_ = 0, remeshing_iterations_ = 0;
-    double                       next_fields_, next_history_ = 0.;
-    std::unique_ptr<PhaseAngles> phase_; // from the first record on
-    std::vector<MotionSample>    motion_;
-    InertiaEllipsoid             ellipsoid_{};
-    std::unique_ptr<Results>     results_;
+    const Parameters        &parameters_;
+    MPI_Comm                 communicator_;
+    Log                      log_;
+    Scene                    scene_;
+    RunMemory                memory_;
+    TimeStepper              stepper_;
+    State                    state_;
+    std::unique_ptr<Results> results_;
   };
 } // namespace tanktread
 

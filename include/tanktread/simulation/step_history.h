@@ -4,6 +4,7 @@
 #ifndef tanktread_simulation_step_history_h
 #define tanktread_simulation_step_history_h
 
+#include <tanktread/shell/shell_configuration.h>
 #include <tanktread/simulation/time_stepping.h>
 
 #include <array>
@@ -11,7 +12,14 @@
 
 namespace tanktread
 {
-  /** The last positions of the shell, at most three, and the scheme on them. Needs nothing of the fluid, so it outlives changes of its mesh. */
+  /** One implicit step of all shells in the form x = xhat + tau dx/dt(x). */
+  struct ShellSteps
+  {
+    ShellFields xhat;
+    double      tau;
+  };
+
+  /** The last positions of all shells, at most three, and the scheme on them. Needs nothing of the fluid, so it outlives changes of its mesh. */
   class StepHistory
   {
   public:
@@ -21,13 +29,13 @@ namespace tanktread
 
     /** Appends an accepted level; times increase. */
     void
-    add(double time, const ControlPoints &x);
+    add(double time, const ShellFields &x);
 
     /** The scheme for a step of `length` from the last level: backward Euler while there is only one. */
-    ImplicitStep
+    ShellSteps
     step(double length) const;
 
-    /** What weighs the last level and the one before in ImplicitStep::xhat, for other fields with the same scheme. */
+    /** What weighs the last level and the one before in ShellSteps::xhat, for other fields with the same scheme. */
     std::array<double, 2>
     weights(double length) const;
 
@@ -39,7 +47,7 @@ namespace tanktread
      * the terms by which the exact motion misses the scheme. Zero while there are too few levels to tell.
      */
     double
-    local_error(double length, const ControlPoints &x) const;
+    local_error(double length, const ShellFields &x) const;
 
     /** Factor by which the length of a step with this local error should change so that it meets Time/Tolerance, between 0.3 and 1.5. */
     double
@@ -50,7 +58,7 @@ namespace tanktread
     first_length() const;
 
     /** Positions at a time up to the last level: the parabola through the last three levels, the straight line through two, the only one. As accurate as the schemes where it lies between the last two. */
-    ControlPoints
+    ShellFields
     at(double time) const;
 
   private:
@@ -62,8 +70,8 @@ namespace tanktread
 
     struct Level
     {
-      double        time;
-      ControlPoints x;
+      double      time;
+      ShellFields x;
     };
 
     TimeParameters    parameters_;

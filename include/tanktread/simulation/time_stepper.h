@@ -5,10 +5,10 @@
 #define tanktread_simulation_time_stepper_h
 
 #include <tanktread/base/log.h>
-#include <tanktread/simulation/step_history.h>
-#include <tanktread/solver/newton_solver.h>
+#include <tanktread/simulation/run_memory.h>
+#include <tanktread/solver/scene.h>
 
-#include <memory>
+#include <string>
 #include <vector>
 
 namespace tanktread
@@ -19,70 +19,73 @@ namespace tanktread
     double       length            = 0.;
     unsigned int newton_iterations = 0;
     unsigned int linear_iterations = 0;
+    ShellFields  beyond_mesh; // not empty: no step was made, since shells that end here cut cells that are not finest ones; to be tried again on a mesh around them too
   };
 
   /**
    * Moves a State from one time level to the next. An implicit step that Newton's method does not solve is tried again from the last level instead of the extrapolated
-   * guess, then with half its length; one whose local error exceeds Time/Tolerance is repeated with a shorter length; lengths grow back by at most 1.5. Failed attempts are
+   * guess, then with half its length; one whose shells overlap at its end, with half its length; one whose local error exceeds Time/Tolerance is repeated with a shorter length; lengths grow back by at most 1.5. Failed attempts are
    * said in the log. All calls are collective.
    */
   class TimeStepper
   {
   public:
-    /** `solver` and `log` are kept by reference. */
-    TimeStepper(const TimeParameters &parameters, TimeCoupling coupling, double end_time, NewtonSolver &solver, Log &log);
+    /** All but the first three are kept by reference. */
+    TimeStepper(const TimeParameters &parameters, TimeCoupling coupling, double end_time, Scene &scene, StepMemory &memory, Log &log);
 
     /** The first level. */
     void
-    start(double time, const ControlPoints &x);
+    start(double time, const ShellFields &x);
 
     /** What the time scheme looks back to: `state`, the last level, and the one before, if there is one. Where there is inertia their flows are to be carried over changes of mesh. */
     std::vector<State *>
     levels(State &state);
 
-    /** To be called when the fluid's mesh has changed and the flows of levels() are not carried over: nothing is extrapolated over that. The positions of the shell stay known to the scheme. */
+    /** To be called when the fluid's mesh has changed and the flows of levels() are not carried over: nothing is extrapolated over that. The positions of the shells stay known to the scheme. */
     void
     forget_flow();
 
     /**
      * One step from `time`, not beyond the end time. Throws NumericalError, with `state` as it was, when no length down to a thousandth of Time/Step can be solved or the
      * explicit coupling is unstable.
+     *
+     * @param mesh_is_new whether the mesh has just been made for this step: then steps whose shells end beyond its finest cells are shortened instead of reported.
      */
     StepResult
-    step(State &state, double time);
+    step(State &state, double time, bool mesh_is_new);
 
-    /** Positions of the shell at a time of the last step. */
-    ControlPoints
+    /** Positions of the shells at a time of the last step. */
+    ShellFields
     position(const double time) const
     {
-      return history_.at(time);
+      return memory_.history.at(time);
     }
 
   private:
     StepResult
-    implicit_step(State &state, double time);
+    implicit_step(State &state, double time, bool mesh_is_new);
     /** One attempt at a step: sets `next` to the new level, or says in the log why not. */
     NewtonReport
-    try_step(const State &state, double length, bool from_extrapolation, State &next);
+    try_step(const State &state, double time, double length, bool from_extrapolation, State &next);
+    /** Attempts from the extrapolated state and from the last one. Returns why they failed, or nothing. */
+    std::string
+    attempts(const State &state, double time, bool first_attempt, StepResult &result, State &next);
     /** Makes `next` the present state, if its local error allows it, and sets the length of the step to come. */
     bool
-    accept_step(State &state, double time, double length, State &next);
+    accept_step(State &state, double time, double length, double shortest, State &next);
     StepResult
     explicit_step(State &state, double time);
     void
     check_explicit_step(const ControlPoints &displacement, double length) const;
     State
-    extrapolated(const State &state, double length) const;
+    guess(const State &state, double length) const;
 
-    TimeParameters         parameters_;
-    TimeCoupling           coupling_;
-    double                 end_time_;
-    NewtonSolver          &solver_;
-    Log                   &log_;
-    StepHistory            history_;
-    double                 next_length_;
-    std::unique_ptr<State> previous_state_; // none at the start and right after a change of mesh
-    double                 previous_length_ = 0.;
+    const TimeParameters parameters_;
+    const TimeCoupling   coupling_;
+    const double         end_time_;
+    Scene               &scene_;
+    StepMemory          &memory_;
+    Log                 &log_;
   };
 } // namespace tanktread
 

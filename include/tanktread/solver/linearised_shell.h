@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Part of Tanktread: what the shell contributes to the Newton system.
+// Part of Tanktread: what the shells contribute to the Newton system.
 
 #ifndef tanktread_solver_linearised_shell_h
 #define tanktread_solver_linearised_shell_h
 
 #include <tanktread/coupling/coupling.h>
 #include <tanktread/solver/distributed_shell.h>
-#include <tanktread/solver/implicit_shell.h>
+#include <tanktread/solver/implicit_shells.h>
 #include <tanktread/solver/shell_motion.h>
 #include <tanktread/solver/state.h>
 
 #include <optional>
+#include <vector>
 
 namespace tanktread
 {
@@ -38,17 +39,17 @@ namespace tanktread
   /** How a LinearisedShell is to be made. */
   struct Linearisation
   {
-    double           tau;      // effective length of the time step
-    double           h;        // finest fluid cell
-    double           accuracy; // relative error that the map dw may have, see ShellMotion
-    PointDerivatives derivatives   = PointDerivatives::complete;
-    Tangent          tangent       = Tangent::exact; // positive: without the negative stiffness of a shell under pressure from its sides, and without -pi H_V
-    Eigen::Matrix3d  flow_gradient = Eigen::Matrix3d::Zero(); // grad u_inf
-    double           viscosity     = 1.;                      // mean of inside and outside
+    double           tau      = 0.; // effective length of the time step; 0: the shells stay
+    double           h        = 1.; // finest fluid cell
+    double           accuracy = 0.; // relative error that the map dw may have, see ShellMotion
+    PointDerivatives derivatives = PointDerivatives::complete;
+    Tangent          tangent     = Tangent::exact; // positive: without the negative stiffness of a shell under pressure from its sides, and without -pi H_V
+    UndisturbedFlow  flow;
+    double           viscosity = 1.; // mean of inside and outside
   };
 
   /**
-   * The shell's rows of the Newton system about (x, F, u, pi, sigma) for a time step of effective length tau, v = dV/dx, H_V = d2V/dx2 (doc/theory.md, section 6):
+   * The rows of one shell in the Newton system about (x, F, u, pi, sigma) for a time step of effective length tau, v = dV/dx, H_V = d2V/dx2 (doc/theory.md, section 6):
    *
    *     (M - tau Gamma - sigma H_V) dx = tau S^T W Phi du + dsigma v - M r_x,   v . dx = -r_V,   Gamma = S^T W grad u S
    *     dG + (K - pi H_V) dx = -r_F,                                            dG = dF + pi H_V dx: change of F + pi v at fixed pi
@@ -61,7 +62,7 @@ namespace tanktread
    *
    * (mass and Laplace-Beltrami matrices on the current surface, mu the mean of the viscosities inside and outside) stands for the inverse of the surface mobility J A^{-1} J^T: c0 + c1 k^2 equals the symbol 4 mu k of
    * that inverse for a plane at both ends of the resolved wave numbers. Eliminating the fluid exactly would leave about
-   * (1 + tau K (1 - tau grad u_inf)^{-1} J A^{-1} J^T) dG, so after the multiplication the row is close to dG = ... for any stiffness. ImplicitShell holds this operator, and it may come from an earlier linearisation.
+   * (1 + tau K (1 - tau grad u_inf)^{-1} J A^{-1} J^T) dG, so after the multiplication the row is close to dG = ... for any stiffness. ImplicitShells holds this operator, and it may come from an earlier linearisation.
    *
    * With PointDerivatives::frozen the derivatives of J(x) and R(x) by x are left out, but for the undisturbed flow's: Gamma is that of grad u_inf and D_R = 0. They are the
    * derivatives of piecewise polynomials at the quadrature points, true only while a point stays in its cell; for longer ways the incomplete system is the better model of what
@@ -77,19 +78,19 @@ namespace tanktread
   {
   public:
     /**
-     * @param velocity of the control points, J u + u_inf(x). @param velocity_gradient at the coupling's points, of the flow whose Gamma is meant. @param implicit_shell is renewed unless it serves for tau; kept by
-     * reference, and not to be changed as long as this object is in use.
+     * @param c number of the capsule in `coupling`. @param shell its shell at state.x. @param velocity of the control points, J u + u_inf(x). @param velocity_gradient of u at the points of this shell on this rank, whose Gamma is meant;
+     * that of the undisturbed flow is added. `coupling` is kept by reference.
      *
-     * Collective. Throws NumericalError when one of the two matrices is singular.
+     * Collective. Throws NumericalError when a matrix is singular.
      */
-    LinearisedShell(const DistributedShell   &shell,
-                    const SubdivisionSurface &surface,
-                    const Coupling           &coupling,
-                    const State              &state,
-                    const ControlPoints      &velocity,
-                    const VelocityGradients  &velocity_gradient,
-                    const Linearisation      &choice,
-                    ImplicitShell            &implicit_shell);
+    LinearisedShell(const DistributedShell                          &elasticity,
+                    const Coupling                                  &coupling,
+                    unsigned int                                     c,
+                    const CapsuleState                              &state,
+                    const std::shared_ptr<const ShellConfiguration> &shell,
+                    const ControlPoints                             &velocity,
+                    VelocityGradients                                velocity_gradient,
+                    const Linearisation                             &choice);
 
     /** dx for r_x = 0, r_V = 0 and given velocity moments S^T W Phi du; zero if tau = 0. */
     ControlPoints
@@ -111,15 +112,85 @@ namespace tanktread
     ControlPoints
     stiffness_times(const ControlPoints &dx) const;
 
-    /** ImplicitShell::damped(), on the first rank only; the force itself if tau = 0. */
-    ControlPoints
-    damped(const ControlPoints &force) const;
-
     /** dF = dG - pi H_V dx. */
     ControlPoints
     force_change(const ControlPoints &dG, const ControlPoints &dx) const;
 
-    /** Whether the system knows what the motion of the spreading points does; otherwise density() is zero. */
+    /** v = dV/dx. */
+    const ControlPoints &
+    volume_gradient() const
+    {
+      return shell_->volume_gradient();
+    }
+    /** g = M^{-1}(F + pi v), control points of the density whose motion D_R describes; zero with frozen points. */
+    const ControlPoints &
+    density() const
+    {
+      return density_;
+    }
+    /** What an implicit operator for this linearisation is made of. */
+    ImplicitOperator
+    implicit_operator(const Linearisation &choice) const;
+
+  private:
+    /** Adds the multiple of A^{-1} v to `dx` that makes v . dx = -r_V. */
+    void
+    correct_volume(ControlPoints &dx, double r_V) const;
+
+    const Capsule                            &capsule_;
+    std::shared_ptr<const ShellConfiguration> shell_;
+    double                                    tau_, pressure_jump_;
+    ControlPoints                             density_;
+    ControlPoints                             flux_gradient_;   // derivative of that rate by x: Gamma^T m + H_V (J u + u_inf)
+    ControlPoints                             volume_response_; // A^{-1} v
+    SparseMatrix                              stiffness_;       // K - pi H_V
+    std::optional<ShellMotion>                motion_;          // A = M - tau Gamma - sigma H_V or without the last; none if tau = 0
+  };
+
+
+  /** The rows of all shells, with the operators that the force rows are multiplied by. */
+  class LinearisedShells
+  {
+  public:
+    /**
+     * @param shells at the state's positions. @param velocities of the control points, J u + u_inf(x). @param velocity_gradients of u at the points of each shell on this rank. @param implicit_shells are renewed unless they serve for
+     * tau; kept by reference, and not to be changed as long as this object is in use, as `coupling`.
+     *
+     * Collective. Throws NumericalError when one of the matrices is singular.
+     */
+    LinearisedShells(const DistributedShell         &elasticity,
+                     const Coupling                 &coupling,
+                     const State                    &state,
+                     const ShellConfigurations      &shells,
+                     const ShellFields              &velocities,
+                     std::vector<VelocityGradients>  velocity_gradients,
+                     const Linearisation            &choice,
+                     ImplicitShells                 &implicit_shells);
+
+    const LinearisedShell &
+    operator[](const unsigned int c) const
+    {
+      return shells_[c];
+    }
+    unsigned int
+    size() const
+    {
+      return shells_.size();
+    }
+
+    /** dx of all shells for given velocity moments. */
+    ShellFields
+    displacements(const ShellFields &velocity_moments) const;
+
+    /** ImplicitShells::damped(), on the rank that owns the capsule only; the force itself if tau = 0. */
+    ControlPoints
+    damped(unsigned int c, const ControlPoints &force) const;
+
+    /** density() of all shells. */
+    ShellFields
+    densities() const;
+
+    /** Whether the system knows what the motion of the spreading points does; otherwise densities are zero. */
     bool
     points_move() const
     {
@@ -135,35 +206,13 @@ namespace tanktread
     {
       return coupling_;
     }
-    /** v = dV/dx. */
-    const ControlPoints &
-    volume_gradient() const
-    {
-      return volume_gradient_;
-    }
-    /** g = M^{-1}(F + pi v), control points of the density whose motion D_R describes; zero with frozen points. */
-    const ControlPoints &
-    density() const
-    {
-      return density_;
-    }
 
   private:
-    /** Adds the multiple of A^{-1} v to `dx` that makes v . dx = -r_V. */
-    void
-    correct_volume(ControlPoints &dx, double r_V) const;
-
-    const Coupling            &coupling_;
-    const ImplicitShell       &implicit_shell_;
-    double                     tau_, pressure_jump_;
-    bool                       points_move_;
-    ControlPoints              volume_gradient_, density_;
-    ControlPoints              normal_field_;    // m = M^{-1} v
-    ControlPoints              flux_gradient_;   // derivative of that rate by x: Gamma^T m + H_V (J u + u_inf)
-    ControlPoints              volume_response_; // A^{-1} v
-    SparseMatrix               volume_hessian_;  // H_V
-    SparseMatrix               stiffness_;       // K - pi H_V
-    std::optional<ShellMotion> motion_;          // A = M - tau Gamma - sigma H_V or without the last; none if tau = 0
+    const Coupling              &coupling_;
+    const ImplicitShells        &implicit_shells_;
+    double                       tau_;
+    bool                         points_move_;
+    std::vector<LinearisedShell> shells_;
   };
 } // namespace tanktread
 

@@ -4,7 +4,7 @@
 #ifndef tanktread_solver_shell_motion_h
 #define tanktread_solver_shell_motion_h
 
-#include <tanktread/coupling/coupling.h>
+#include <tanktread/shell/capsule.h>
 #include <tanktread/solver/block_factorisation.h>
 
 #include <memory>
@@ -26,10 +26,10 @@ namespace tanktread
     static constexpr unsigned int max_terms = 12;
 
     /**
-     * M is the mass matrix of `coupling`, kept by reference; `N` has the pattern of its gradient_matrix(). `accuracy`: error wanted, relative to the solution and measured on a rough field.
+     * M is the mass matrix of `capsule`, kept by reference; `N` has the pattern of AssemblyPattern::block_matrix(). `accuracy`: error wanted, relative to the solution and measured on a rough field.
      * Throws NumericalError when A has to be factorised and is singular.
      */
-    ShellMotion(const Coupling &coupling, SparseMatrix N, double accuracy);
+    ShellMotion(const Capsule &capsule, SparseMatrix N, double accuracy);
 
     /** A^{-1} moments, a linear map. */
     ControlPoints
@@ -51,7 +51,7 @@ namespace tanktread
     unsigned int
     terms_needed(double accuracy) const;
 
-    const Coupling                     &coupling_;
+    const Capsule                      *capsule_;
     SparseMatrix                        N_;
     unsigned int                        n_terms_;
     std::unique_ptr<BlockFactorisation> factors_;

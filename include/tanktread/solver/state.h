@@ -4,48 +4,47 @@
 #ifndef tanktread_solver_state_h
 #define tanktread_solver_state_h
 
-#include <tanktread/coupling/jump_enrichment.h>
-#include <tanktread/surface/types.h>
+#include <tanktread/coupling/vertex_sides.h>
+#include <tanktread/fluid/types.h>
+#include <tanktread/shell/shell_configuration.h>
+
+#include <vector>
 
 namespace tanktread
 {
-  /** The undisturbed flow (shear_rate * z, 0, 0); all fluid unknowns are disturbances of it. */
-  struct UndisturbedFlow
+  /** Unknowns (x, F, pi, sigma) of one capsule. The nodal forces F equal f(x) in a solution; keeping them as unknowns lets Newton's method step over the stiffness
+   * of the shell: f varies much more on the way to the solution than anything that the fluid feels. */
+  struct CapsuleState
   {
-    double shear_rate = 0.;
-
-    /** Velocity at positions given as rows. */
-    ControlPoints
-    velocity(const ControlPoints &positions) const
-    {
-      ControlPoints result = ControlPoints::Zero(positions.rows(), 3);
-      result.col(0)        = shear_rate * positions.col(2);
-      return result;
-    }
-
-    /** Its gradient, entry (c, d) being du_c/dx_d. */
-    Eigen::Matrix3d
-    gradient() const
-    {
-      Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
-      result(0, 2)           = shear_rate;
-      return result;
-    }
+    ControlPoints x;                  // control points, NP x 3, in a
+    ControlPoints force;              // F, NP x 3
+    double        pressure_jump = 0.; // pi: pressure of the capsule's interior above that of the continuous field
+    double        volume_shift  = 0.; // sigma: displacement along m = M^{-1} dV/dx, in a, that undoes the volume error of the time scheme
+    VertexSides   sides;              // on which side of the shell the pressure's vertices were, see Coupling::carry_pressure()
   };
 
-  /**
-   * Unknowns (u, p, pi, x, F, sigma) of one time level. The nodal forces F equal f(x) in a solution; keeping them as unknowns lets Newton's method step over the stiffness
-   * of the shell: f varies much more on the way to the solution than anything that the fluid feels.
-   */
+  /** Unknowns of one time level: the liquid's and each capsule's. */
   struct State
   {
-    ControlPoints    x;                  // control points, NP x 3, in a
-    ControlPoints    force;              // F, NP x 3
-    FluidBlockVector fluid;              // disturbance velocity (blocks 0-2) and pressure (block 3), condensed: constrained entries are zero
-    VertexSides      sides;              // on which side of the shell the pressure's vertices were, see Coupling::carry_pressure()
-    double           volume_shift  = 0.; // sigma: displacement along m = M^{-1} dV/dx, in a, that undoes the volume error of the time scheme
-    double           pressure_jump = 0.; // pi: pressure of the capsule's interior above that of the continuous field
+    FluidBlockVector          fluid; // disturbance velocity and pressure, condensed: constrained entries are zero
+    std::vector<CapsuleState> capsules;
   };
+
+  /** Control points of all capsules. */
+  ShellFields
+  positions(const State &state);
+
+  /** Nodal forces F of all capsules. */
+  ShellFields
+  forces(const State &state);
+
+  /** state += factor increment, the sides excepted. */
+  void
+  add(State &state, double factor, const State &increment);
+
+  /** state + ratio (state - before), but for sigma and the sides, which stay. */
+  State
+  extrapolated(const State &state, const State &before, double ratio);
 } // namespace tanktread
 
 #endif

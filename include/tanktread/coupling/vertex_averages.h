@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: forces of one shell extended from its points to the vertices of the cells about it, by averages.
+
+#ifndef tanktread_coupling_vertex_averages_h
+#define tanktread_coupling_vertex_averages_h
+
+#include <tanktread/base/vector4.h>
+#include <tanktread/fluid/point_interpolation.h>
+#include <tanktread/shell/shell_configuration.h>
+
+#include <array>
+#include <memory>
+#include <vector>
+
+namespace tanktread
+{
+  /** Four numbers at each vertex of this rank's cells: f_t and f_n, or what is dual to them. A full array of the linear NodeSpace with four components. */
+  using VertexArray = dealii::AlignedVector<double>;
+
+  /** The same at the vertices of one cell. */
+  using VertexForces = std::array<Vector4, 8>;
+
+  /** Consecutive entries among the points of all shells on this rank: those of one shell. */
+  struct PointRange
+  {
+    unsigned int begin = 0, end = 0;
+  };
+
+  /**
+   * f_t and f_n at a vertex x_v are averages of the forces per area at the points X_q of the surface with the mesh's linear hat functions as weights,
+   *
+   *     f_v = sum_q M_v(X_q) f_q dA_q / sum_q M_v(X_q) dA_q,   f_t = f - f_n n,   f_n = f . n,
+   *
+   * and zero at vertices that see no point. extend() is this map, add_transposed() its transpose.
+   */
+  class VertexAverages
+  {
+  public:
+    /** @param vertices linear nodes with four components. */
+    explicit VertexAverages(std::shared_ptr<const NodeSpace> vertices);
+
+    /**
+     * @param points of all shells, kept by reference. @param range those of this shell. @param first number of its first point among those of all shells. Collective.
+     */
+    void
+    move(const ShellConfiguration &shell, const PointInterpolation &points, const PointRange &range, unsigned int first);
+
+    /** @param at_points force times area at the points of all shells on this rank, 3 numbers each. Collective. */
+    void
+    extend(const std::vector<double> &at_points, VertexArray &at_vertices) const;
+
+    /** values += transpose of extend() times `dual`, whose entries at vertices of other ranks have been added to by this rank; void afterwards. Collective. */
+    void
+    add_transposed(VertexArray &dual, std::vector<double> &values) const;
+
+    /** Points of one cell: places [begin, end) in the order of cells. */
+    struct Group
+    {
+      unsigned int cell, begin, end;
+    };
+    static constexpr unsigned int no_points = static_cast<unsigned int>(-1);
+
+    const std::vector<Group> &
+    groups() const
+    {
+      return groups_;
+    }
+    /** Number of a cell's group, or no_points. */
+    unsigned int
+    group_of_cell(const unsigned int cell) const
+    {
+      return group_of_cell_[cell];
+    }
+    unsigned int
+    n_points() const
+    {
+      return order_.size();
+    }
+    /** Which of the local points of all shells is at place i. */
+    unsigned int
+    point(const unsigned int i) const
+    {
+      return order_[i];
+    }
+    const Vector4 &
+    normal(const unsigned int i) const
+    {
+      return normals_[i];
+    }
+    /** Area of the point at place i. */
+    double
+    area(const unsigned int i) const
+    {
+      return areas_[i];
+    }
+    const dealii::Point<3> &
+    unit_position(const unsigned int i) const
+    {
+      return points_->unit_positions()[order_[i]];
+    }
+
+    /** Of `values` at the vertices of a cell. */
+    VertexForces
+    at_cell(const VertexArray &values, unsigned int cell) const;
+    void
+    add_to_cell(unsigned int cell, const VertexForces &forces, VertexArray &values) const;
+
+    const NodeSpace &
+    vertices() const
+    {
+      return *vertices_;
+    }
+
+  private:
+    void
+    group_points(const PointRange &range);
+    void
+    set_weights();
+    /** Sums over cells and ranks become averages, known at all vertices of this rank's cells. */
+    void
+    average(VertexArray &values) const;
+
+    std::shared_ptr<const NodeSpace>   vertices_;
+    const PointInterpolation          *points_ = nullptr;
+    std::vector<unsigned int>          order_; // local points by cell
+    std::vector<Group>                 groups_;
+    std::vector<unsigned int>          group_of_cell_;
+    std::vector<std::array<double, 8>> hats_; // M_v at the points, in that order
+    std::vector<Vector4>               normals_;
+    std::vector<double>                areas_, inverse_weights_;
+  };
+
+  /** The trilinear functions of the eight vertices of the unit cube. */
+  std::array<double, 8>
+  hat_functions(const dealii::Point<3> &x);
+} // namespace tanktread
+
+#endif

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: what is measured on a state: each capsule, and all of them together.
+
+#ifndef tanktread_simulation_observables_h
+#define tanktread_simulation_observables_h
+
+#include <tanktread/shell/shell.h>
+#include <tanktread/simulation/particle_stress.h>
+#include <tanktread/solver/scene.h>
+#include <tanktread/surface/surface_geometry.h>
+
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tanktread
+{
+  /** Names and values of the columns of a table, in their order. */
+  using Row = std::vector<std::pair<std::string, double>>;
+
+  /** What is the same for all capsules of a step. */
+  struct StepObservables
+  {
+    double       time              = 0.;
+    double       step              = 0.;
+    double       dissipation       = 0.; // in the box, beyond that of the undisturbed flow
+    unsigned int newton_iterations = 0, linear_iterations = 0;
+    double       n_cells   = 0.;
+    double       wall_time = 0.;
+  };
+
+  /** One capsule: a row of its history. */
+  struct CapsuleObservables
+  {
+    InertiaEllipsoid ellipsoid{};
+    Eigen::Vector3d  velocity      = Eigen::Vector3d::Zero(); // of the centre of the enclosed volume
+    double           theta_over_pi = 0.;                      // inclination in units of pi; not a number while the section is round
+    double           volume = 0., volume_error = 0., area = 0.;
+    Shell::Energy    energy{};
+    double           pressure_jump    = 0.;
+    double           theta_continuous = 0., alpha = 0., delta = 0.; // see PhaseAngles
+    Eigen::Matrix3d  stress = Eigen::Matrix3d::Zero();              // see particle_stress()
+    Rheology         rheology{};
+  };
+
+  /** All capsules together: a row of suspension.csv. */
+  struct SuspensionObservables
+  {
+    Eigen::Matrix3d stress             = Eigen::Matrix3d::Zero(); // sum of the particle stresses over the volume of the box
+    double          relative_viscosity = 0.;                      // 1 + stress : E / (2 E : E), E the strain rate of a linear flow; not a number otherwise
+    double          smallest_gap       = 0.;                      // see ShellGap; infinite for one capsule far from its images
+    double          distance_from_faces = 0.;                     // with prescribed velocity; infinite without
+    double          volume_fraction     = 0.;
+  };
+
+  /** Shape, energies and stress of each capsule. @param velocities of their control points. Collective. */
+  std::vector<CapsuleObservables>
+  observe(Scene &scene, const State &state, const ShellFields &velocities);
+
+  /** @param capsules of the same state. Collective. */
+  SuspensionObservables
+  observe_suspension(Scene &scene, const State &state, const std::vector<CapsuleObservables> &capsules);
+
+  /** The columns of history.csv. */
+  Row
+  history_row(const StepObservables &step, const CapsuleObservables &capsule);
+
+  /** The columns of suspension.csv. */
+  Row
+  suspension_row(const StepObservables &step, const SuspensionObservables &suspension);
+} // namespace tanktread
+
+#endif

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: what a run carries from one step to the next beside the state and the solver's memory.
+
+#ifndef tanktread_simulation_run_memory_h
+#define tanktread_simulation_run_memory_h
+
+#include <tanktread/simulation/motion.h>
+#include <tanktread/simulation/phase_angles.h>
+#include <tanktread/simulation/step_history.h>
+#include <tanktread/solver/state.h>
+#include <tanktread/surface/surface_geometry.h>
+
+#include <memory>
+#include <vector>
+
+namespace tanktread
+{
+  /** What the time scheme looks back to, and the length of the next step. */
+  struct StepMemory
+  {
+    /** Of a run that has not begun. */
+    explicit StepMemory(const TimeParameters &parameters)
+      : history(parameters)
+      , next_length(history.first_length())
+    {}
+
+    StepHistory            history;
+    double                 next_length;
+    std::unique_ptr<State> previous_state; // none at the start and right after a change of mesh
+    double                 previous_length = 0.;
+  };
+
+  /** One capsule as outputs remember it. */
+  struct CapsuleMemory
+  {
+    PhaseAngles               phase;
+    InertiaEllipsoid          ellipsoid; // at the last record
+    std::vector<MotionSample> motion;
+  };
+
+  /** With State, SolverMemory, the mesh and what Coupling holds, all that the rest of a run follows from: what a checkpoint has to write. */
+  struct RunMemory
+  {
+    explicit RunMemory(const TimeParameters &parameters)
+      : steps(parameters)
+    {}
+
+    double                     time    = 0.;
+    unsigned int               n_steps = 0;
+    StepMemory                 steps;
+    unsigned int               n_quiet_steps        = 0; // in which the shapes have hardly changed, the last ones
+    unsigned int               remeshing_iterations = 0; // linear ones, for the flow on a new mesh, to be counted in the next step
+    double                     next_fields = 0., next_history = 0.;
+    std::vector<CapsuleMemory> capsules; // from the first record on
+  };
+} // namespace tanktread
+
+#endif

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: the factorised implicit operators of the shells, kept from one linearisation to the next.
+
+#ifndef tanktread_solver_implicit_shells_h
+#define tanktread_solver_implicit_shells_h
+
+#include <tanktread/fluid/linear_solver.h>
+#include <tanktread/solver/block_factorisation.h>
+#include <tanktread/solver/shell_layout.h>
+#include <tanktread/solver/solver_memory.h>
+
+#include <memory>
+#include <vector>
+
+namespace tanktread
+{
+  /**
+   * For each capsule the map Z_tau (Z_tau + tau K_pi)^{-1}, Z_tau = Z (1 - tau grad u_inf), by which LinearisedShells multiplies the force row of the Newton system: Z, tau and
+   * K_pi = K - pi H_V of some linearisation.
+   *
+   * Any regular matrix would leave the solution of the system unchanged; this one makes it fast. So one made for an earlier shape serves as long as it makes it fast
+   * enough, which linear solves are watched for. All capsules' operators are renewed together.
+   *
+   * Factors are on the rank that owns the capsule only.
+   */
+  class ImplicitShells
+  {
+  public:
+    /** Both are kept by reference. */
+    ImplicitShells(const ShellLayout &layout, SolverMemory &memory);
+
+    /** Whether there are operators that are expected to do well with a step of length tau: made for one that differs by a factor of 1.5 at most, and not worn out. */
+    bool
+    serves(double tau) const;
+
+    /** Replaces the operators, one for each capsule. Collective; throws NumericalError on all ranks when one is singular. */
+    void
+    renew(std::vector<ImplicitOperator> operators, double tau);
+
+    /**
+     * To be told about every linear solve with these operators. They are worn out when one takes more than 1.1 times the iterations that a decade took in the best solve so far, and 1 more: an
+     * iteration costs several factorisations where the fluid has many unknowns a rank. The first rank decides for all. Collective.
+     */
+    void
+    watch(const LinearReport &report);
+
+    /** Forgets the operators. */
+    void
+    discard()
+    {
+      memory_.tau = 0.;
+    }
+
+    /** How often they were renewed. */
+    unsigned int
+    n_renewals() const
+    {
+      return memory_.n_renewals;
+    }
+
+    /** Z_tau (Z_tau + tau K_pi)^{-1} force of capsule c on the rank that owns it, zero on the others. */
+    ControlPoints
+    damped(unsigned int c, const ControlPoints &force) const;
+
+    /** (Z_tau + tau K_pi)^{-1} force of capsule c on the rank that owns it, zero on the others: about how fast the shell moves to balance a force that is missing. */
+    ControlPoints
+    velocity(unsigned int c, const ControlPoints &force) const;
+
+  private:
+    void
+    factorise(unsigned int c);
+    /** 1 - tau grad u_inf. */
+    Eigen::Matrix3d
+    drift(unsigned int c) const;
+    void
+    judge(const LinearReport &report);
+
+    const ShellLayout                               &layout_;
+    SolverMemory                                    &memory_;
+    std::vector<std::unique_ptr<BlockFactorisation>> factors_; // of the capsules of this rank
+  };
+} // namespace tanktread
+
+#endif

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: capsules in a box of liquid, put together.
+
+#ifndef tanktread_solver_scene_h
+#define tanktread_solver_scene_h
+
+#include <tanktread/fluid/box.h>
+#include <tanktread/shell/gaps.h>
+#include <tanktread/solver/newton_solver.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tanktread
+{
+  /** What a scene is made of: all that a run, a benchmark or a test has to say about it. */
+  struct SceneDescription
+  {
+    Box                             box;
+    Liquids                         liquids;
+    FittedShape                     shape; // of each capsule, about its centre
+    std::optional<ControlPoints>    stress_free;
+    std::vector<Eigen::RowVector3d> centres = {Eigen::RowVector3d::Zero()};
+    ShellParameters                 shell;
+    ShellModuli                     moduli{1., 0.};
+    unsigned int                    shell_quadrature = 3; // points a face
+    FluidMeshParameters             fluid_mesh;
+    SolverParameters                solver;
+  };
+
+  /**
+   * The objects of a scene and who knows whom: the liquid, the kind of capsule, their coupling, a time level of all unknowns and its solver, with their memory. The program, the benchmarks and the tests build scenes through this class.
+   * All members but the plain accessors are collective.
+   */
+  class Scene
+  {
+  public:
+    /** Throws what Capsule and Fluid throw. There is no mesh before refine_around(). */
+    Scene(SceneDescription description, MPI_Comm communicator);
+
+    /** The capsules where the description has them, without forces and flow. */
+    State
+    initial_state() const;
+
+    /** New mesh around the shells of `state`, and of others if there are any; void are then all fluid vectors of before, those of `state` too. */
+    void
+    refine_around(const State &state, const std::vector<ShellFields> &others = {});
+
+    /** Whether all cells near the shells are finest ones, within a finest cell with the enriched interface and half of one with the plain one. */
+    bool
+    covers(const State &state);
+
+    /** Of the shells of `state`: within four finest cells to the accuracy of the surface. */
+    ShellGap
+    gap(const State &state);
+
+    /** Distance from the faces of the box with prescribed velocity. */
+    double
+    distance_from_faces(const State &state);
+
+    /** Why a state must not be accepted: shells that overlap; empty if there is no reason. The same on all ranks. */
+    std::string
+    refusal(const State &state);
+
+    const SceneDescription &
+    description() const
+    {
+      return description_;
+    }
+    const Capsule &
+    capsule() const
+    {
+      return capsule_;
+    }
+    Fluid &
+    fluid()
+    {
+      return fluid_;
+    }
+    const DistributedShell &
+    elasticity() const
+    {
+      return elasticity_;
+    }
+    Coupling &
+    coupling()
+    {
+      return coupling_;
+    }
+    TimeLevel &
+    level()
+    {
+      return level_;
+    }
+    NewtonSolver &
+    solver()
+    {
+      return solver_;
+    }
+    SolverMemory &
+    memory()
+    {
+      return memory_;
+    }
+    Timings &
+    timings()
+    {
+      return timings_;
+    }
+
+  private:
+    std::array<double, 3>
+    periods() const;
+
+    const SceneDescription description_;
+    const MPI_Comm         communicator_;
+    Timings                timings_;
+    SolverMemory           memory_;
+    Fluid                  fluid_;
+    const Capsule          capsule_;
+    const DistributedShell elasticity_;
+    Coupling               coupling_;
+    TimeLevel              level_;
+    NewtonSolver           solver_;
+  };
+} // namespace tanktread
+
+#endif

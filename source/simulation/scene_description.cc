@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: from the parameters of a run to its scene.
+
+#include <tanktread/base/exceptions.h>
+#include <tanktread/shell/gaps.h>
+#include <tanktread/simulation/scene_description.h>
+
+#include <algorithm>
+#include <limits>
+#include <sstream>
+#include <utility>
+
+namespace tanktread
+{
+  namespace
+  {
+    /** The description with a control mesh of at most `max_level`. */
+    SceneDescription
+    description(const Parameters &parameters, const unsigned int max_level)
+    {
+      SceneDescription result;
+      result.box                     = parameters.scene.box();
+      result.liquids.flow            = parameters.scene.undisturbed_flow();
+      result.liquids.viscosity_ratio = parameters.scene.viscosity_ratio;
+      result.liquids.reynolds_number = parameters.scene.reynolds_number;
+      result.shape                   = make_capsule(parameters.capsule, std::min(parameters.shell_mesh.level, max_level));
+      result.centres                 = parameters.placement.positions();
+      result.shell                   = parameters.shell;
+      result.moduli                  = {parameters.scene.surface_young_modulus(), parameters.scene.bending_modulus()};
+      result.shell_quadrature        = parameters.shell_mesh.quadrature;
+      result.fluid_mesh              = parameters.fluid_mesh;
+      result.solver                  = parameters.solver;
+      return result;
+    }
+
+
+    void
+    check_extent(const SceneDescription &scene, const double h)
+    {
+      static const char *const axes   = "xyz";
+      const Eigen::RowVector3d extent = scene.shape.control_points.colwise().maxCoeff() - scene.shape.control_points.colwise().minCoeff();
+      for (unsigned int d = 0; d < 3; ++d)
+        {
+          // The enriched interface cannot tell a shell from its image where cells of the fluid are near to both.
+          const double needed = extent[d] + (scene.box.is_periodic(d) && scene.solver.interface == Interface::enriched ? 4. * h : 0.);
+          if (needed < scene.box.side[d])
+            continue;
+          std::ostringstream message;
+          message << "Scene/Box side is " << scene.box.side[d] << " along " << axes[d] << "; allowed: more than " << needed << ", the capsule's extent"
+                  << (needed > extent[d] ? " and four finest cells to its periodic image" : "") << '.';
+          throw InputError(message.str());
+        }
+    }
+
+
+    void
+    check_places(const SceneDescription &scene, const double h)
+    {
+      const CapsuleQuadrature rule{triangle_quadrature(3), triangle_quadrature(12), Derivatives::second};
+      const Capsule           capsule(scene.shape, rule, scene.shell, scene.moduli, scene.stress_free);
+      ShellFields             x;
+      std::array<double, 3>   periods, half_sides;
+      for (const Eigen::RowVector3d &centre : scene.centres)
+        x.push_back(scene.shape.control_points.rowwise() + centre);
+      for (unsigned int d = 0; d < 3; ++d)
+        {
+          periods[d]    = scene.box.is_periodic(d) ? scene.box.side[d] : std::numeric_limits<double>::infinity();
+          half_sides[d] = scene.box.is_periodic(d) ? std::numeric_limits<double>::infinity() : 0.5 * scene.box.side[d];
+        }
+      const ShellConfigurations shells = shell_configurations(capsule, x);
+      std::ostringstream        message;
+      if (const double distance = smallest_distance_from_faces(shells, half_sides); distance <= 0.)
+        {
+          message << "Capsule/Centres: a capsule reaches " << -distance << " a beyond a face of the box with prescribed velocity; allowed: inside.";
+          throw InputError(message.str());
+        }
+      if (const ShellGap smallest = smallest_gap(shells, periods, 4. * h); smallest.gap <= 0.)
+        {
+          message << "Capsule/Centres: capsules " << smallest.first + 1 << " and " << smallest.second + 1 << " overlap by " << -smallest.gap
+                  << " a; allowed: capsules that do not touch, periodic images included.";
+          throw InputError(message.str());
+        }
+    }
+  } // namespace
+
+
+  SceneDescription
+  scene_description(const Parameters &parameters)
+  {
+    return description(parameters, std::numeric_limits<unsigned int>::max());
+  }
+
+
+  void
+  check_scene(const Parameters &parameters)
+  {
+    // A coarse control mesh has the shape to a hundredth of a per cent.
+    const SceneDescription scene = description(parameters, 3);
+    if (scene.centres.size() > 1 && parameters.scene.viscosity_ratio != 1.)
+      {
+        std::ostringstream message;
+        message << "Scene/Viscosity ratio is " << parameters.scene.viscosity_ratio << "; allowed with " << scene.centres.size() << " capsules in this version: 1";
+        throw InputError(message.str());
+      }
+    check_extent(scene, parameters.fluid_mesh.finest_cell);
+    check_places(scene, parameters.fluid_mesh.finest_cell);
+  }
+} // namespace tanktread

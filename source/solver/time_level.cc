@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: the nonlinear system of a time level: what is wrong with a state, and what a state means.
+
+#include <deal.II/base/mpi.h>
+
+#include <tanktread/solver/time_level.h>
+#include <tanktread/surface/surface_geometry.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace tanktread
+{
+  namespace
+  {
+    /** Integral of 2 eps : eps of the undisturbed flow over the inside of a shell, by the divergence theorem for each degree of the polynomial about the shell's middle. */
+    double
+    undisturbed_dissipation(const UndisturbedFlow &flow, const ShellConfiguration &shell)
+    {
+      const SubdivisionSurface  &surface = shell.capsule().surface();
+      const Eigen::RowVector3d   centre  = shell.x().colwise().mean();
+      const ControlPoints        X       = (surface.S() * shell.x()).rowwise() - centre;
+      const ControlPoints        n       = normals(surface, shell.x());
+      const Eigen::VectorXd      areas   = area_weights(surface, shell.x());
+      const dealii::Tensor<2, 3> G       = flow.gradient({centre[0], centre[1], centre[2]});
+      const dealii::Tensor<2, 3> twice_0 = G + transpose(G);
+      double                     result  = 0.;
+      for (Eigen::Index q = 0; q < X.rows(); ++q)
+        {
+          const dealii::Tensor<2, 3> H       = flow.quadratic * dealii::Tensor<1, 3>({X(q, 0), X(q, 1), X(q, 2)});
+          const dealii::Tensor<2, 3> twice_1 = H + transpose(H);
+          const double               density = scalar_product(twice_0, twice_0) / 3. + 2. * scalar_product(twice_0, twice_1) / 4. + scalar_product(twice_1, twice_1) / 5.;
+          result += 0.5 * density * areas[q] * X.row(q).dot(n.row(q));
+        }
+      return result;
+    }
+  } // namespace
+
+
+  TimeLevel::TimeLevel(const Liquids &liquids, const DistributedShell &elasticity, Coupling &coupling, SolverMemory &memory, Timings &timings)
+    : liquids_(liquids)
+    , elasticity_(elasticity)
+    , coupling_(coupling)
+    , memory_(memory)
+    , timings_(timings)
+    , flow_(liquids.flow.at(0.))
+  {
+    coupling.set_viscosity_contrast({liquids.viscosity_ratio, flow_});
+    if (has_viscosities() && (coupling.n_capsules() > 1 || liquids.flow.frequency != 0.))
+      throw std::logic_error("TimeLevel: another viscosity inside is for one capsule in a steady flow.");
+  }
+
+
+  void
+  TimeLevel::attach(Fluid &fluid)
+  {
+    fluid_ = &fluid;
+    coupling_.attach(fluid.space());
+    memory_.viscosity_x.clear();
+    if (has_inertia())
+      inertia_ = std::make_unique<Inertia>(fluid.space(), liquids_.reynolds_number, flow_.linear[0][2]);
+  }
+
+
+  void
+  TimeLevel::begin(const TimeStep &step)
+  {
+    flow_ = liquids_.flow.at(step.time);
+    if (!inertia_)
+      return;
+    if (step.uhat == nullptr)
+      throw std::logic_error("TimeLevel: a step with inertia needs uhat.");
+    inertia_->begin_step(*step.uhat, step.tau);
+    fluid_->set_shift(inertia_->mass());
+  }
+
+
+  void
+  TimeLevel::begin_at_rest(const double time)
+  {
+    flow_ = liquids_.flow.at(time);
+    fluid_->set_shift(0.);
+  }
+
+
+  const ShellConfigurations &
+  TimeLevel::shells(const State &state)
+  {
+    shells_.resize(state.capsules.size());
+    for (std::size_t c = 0; c < shells_.size(); ++c)
+      if (const ControlPoints &x = state.capsules[c].x; !shells_[c] || shells_[c]->x() != x)
+        shells_[c] = std::make_shared<ShellConfiguration>(coupling_.capsule(), x);
+    return shells_;
+  }
+
+
+  void
+  TimeLevel::set_viscosity(const State &state)
+  {
+    if (!has_viscosities() || viscosity_distance(state) == 0.)
+      return;
+    const Timings::Scope scope(timings_, "Viscosity");
+    memory_.viscosity_x = positions(state);
+    fluid_->set_viscosity(coupling_.viscosity(*shells(state)[0]));
+    undisturbed_load_.reinit(fluid_->space().velocity->partitioner());
+    fluid_->viscosity()->add_excess_stress(fluid_->space(), flow_.linear, undisturbed_load_);
+  }
+
+
+  double
+  TimeLevel::viscosity_distance(const State &state) const
+  {
+    if (!has_viscosities())
+      return 0.;
+    double result = memory_.viscosity_x.empty() ? std::numeric_limits<double>::infinity() : 0.;
+    for (std::size_t c = 0; c < memory_.viscosity_x.size(); ++c)
+      result = std::max(result, (state.capsules[c].x - memory_.viscosity_x[c]).rowwise().norm().maxCoeff());
+    return result;
+  }
+
+
+  void
+  TimeLevel::update_jumps(const State &state)
+  {
+    coupling_.update_viscous_forces(state.fluid, forces(state));
+  }
+
+
+  Residual
+  TimeLevel::residual(State &state, const TimeStep &step, const Points points)
+  {
+    const Timings::Scope scope(timings_, "Residual");
+    const double         tau = step.tau;
+    Residual             r;
+    r.capsules.resize(state.capsules.size());
+    for (std::size_t c = 0; c < state.capsules.size(); ++c)
+      r.capsules[c].force = state.capsules[c].force - elasticity_.force(state.capsules[c].x);
+    const ShellConfigurations shells = this->shells(state);
+    if (points == Points::follow)
+      move_points(state);
+
+    fluid_->space().reinit(r.fluid);
+    fluid_->stokes().vmult(r.fluid, state.fluid);
+    if (has_viscosities())
+      r.fluid.block(velocity_block) += undisturbed_load_;
+    if (inertia_ && tau > 0.)
+      inertia_->add_residual(state.fluid, r.fluid);
+    ExtendedForces extended;
+    ShellFields    F = forces(state);
+    coupling_.extend_whole(F, extended);
+    const ShellFields disturbance = coupling_.interpolate(state.fluid, extended), undisturbed = coupling_.undisturbed_velocity(flow_, shells);
+    for (std::size_t c = 0; c < F.size(); ++c)
+      F[c] += state.capsules[c].pressure_jump * shells[c]->volume_gradient();
+    coupling_.spread(-1., F, extended, r.fluid);
+    r.shell_speed = shell_speed(r.fluid);
+    for (std::size_t c = 0; c < F.size(); ++c)
+      {
+        const ControlPoints velocity = disturbance[c] + undisturbed[c];
+        r.capsules[c].volume         = shells[c]->volume() - shells[c]->capsule().volume();
+        r.capsules[c].flux           = shells[c]->volume_gradient().cwiseProduct(velocity).sum();
+        r.capsules[c].x              = state.capsules[c].x - step.xhat[c] - tau * velocity - state.capsules[c].volume_shift * shells[c]->normal_field();
+      }
+    return r;
+  }
+
+
+  void
+  TimeLevel::move_points(State &state)
+  {
+    coupling_.move(shells(state));
+    carry_pressure(state);
+  }
+
+
+  void
+  TimeLevel::carry_pressure(State &state) const
+  {
+    std::vector<VertexSides *> sides;
+    for (CapsuleState &capsule : state.capsules)
+      sides.push_back(&capsule.sides);
+    coupling_.carry_pressure(forces(state), sides, state.fluid);
+  }
+
+
+  ShellFields
+  TimeLevel::shell_velocity(const State &state)
+  {
+    ExtendedForces extended;
+    coupling_.extend_whole(forces(state), extended);
+    ShellFields       result      = coupling_.interpolate(state.fluid, extended);
+    const ShellFields undisturbed = coupling_.undisturbed_velocity(flow_, shells(state));
+    for (std::size_t c = 0; c < result.size(); ++c)
+      result[c] += undisturbed[c];
+    return result;
+  }
+
+
+  double
+  TimeLevel::shell_speed(const FluidBlockVector &load) const
+  {
+    FluidBlockVector flow;
+    fluid_->space().reinit(flow);
+    fluid_->preconditioner().vmult(flow, load);
+    double       sum = 0.;
+    Eigen::Index n   = 0;
+    for (const ControlPoints &velocity : coupling_.interpolate(flow))
+      {
+        sum += velocity.squaredNorm();
+        n += velocity.rows();
+      }
+    return std::sqrt(sum / n);
+  }
+
+
+  FluidBlockVector
+  TimeLevel::loads(const State &state)
+  {
+    FluidBlockVector result;
+    fluid_->space().reinit(result);
+    coupling_.spread(forces(state), result);
+    ShellFields pressures;
+    for (const auto &shell : shells(state))
+      pressures.push_back(shell->volume_gradient());
+    coupling_.spread(pressures, result);
+    if (has_viscosities())
+      result.block(velocity_block) += undisturbed_load_;
+    return result;
+  }
+
+
+  void
+  TimeLevel::set_forces(State &state) const
+  {
+    for (CapsuleState &capsule : state.capsules)
+      capsule.force = elasticity_.force(capsule.x);
+  }
+
+
+  double
+  TimeLevel::dissipation(const State &state)
+  {
+    ExtendedForces    extended;
+    const ShellFields F = forces(state);
+    coupling_.extend_whole(F, extended);
+    const ShellFields disturbance = coupling_.interpolate(state.fluid, extended);
+    double            result      = -inertial_power(state);
+    for (std::size_t c = 0; c < F.size(); ++c)
+      result += F[c].cwiseProduct(disturbance[c]).sum();
+    if (!has_viscosities())
+      return result;
+    result += undisturbed_load_ * state.fluid.block(velocity_block) + coupling_.undisturbed_work(F);
+    for (const auto &shell : shells(state))
+      result += (liquids_.viscosity_ratio - 1.) * undisturbed_dissipation(flow_, *shell);
+    return result;
+  }
+
+
+  double
+  TimeLevel::inertial_power(const State &state) const
+  {
+    return inertia_ && inertia_->mass() > 0. ? inertia_->power(state.fluid) : 0.;
+  }
+} // namespace tanktread
