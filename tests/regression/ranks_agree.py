@@ -38,7 +38,10 @@ def compared_file(args, ranks):
 def main():
     args = arguments()
     pathlib.Path(args.output).mkdir(parents=True, exist_ok=True)
-    first, *others = (compared_file(args, int(n)) for n in args.ranks.split(","))
+    ranks = [int(n) for n in args.ranks.split(",")]
+    if len(ranks) < 2:
+        sys.exit(f"--ranks {args.ranks}: nothing to compare with")
+    first, *others = (compared_file(args, n) for n in ranks)
     failed = 0
     for other in others:
         print(f"{first} and {other}:", flush=True)
