@@ -4,6 +4,7 @@
 """Feeds check_run.py, run_regression.py and expect.py what a broken program would leave."""
 
 import argparse
+import os
 import pathlib
 import subprocess
 import sys
@@ -74,6 +75,14 @@ class RunRegression(Folder):
         for rows, names in (([], ("time",)), (GOOD, ("time", "wrong"))):
             with self.assertRaises(SystemExit):
                 self.selected(rows, names)
+
+
+class Scripts(unittest.TestCase):
+    def test_what_names_its_interpreter_can_be_started(self):
+        root = HERE.parents[1]
+        scripts = [file for folder in ("benchmarks", "tests") for file in (root / folder).rglob("*.py") if file.read_text().startswith("#!")]
+        self.assertGreater(len(scripts), 10)
+        self.assertEqual([str(file) for file in scripts if not os.access(file, os.X_OK)], [])
 
 
 class Expect(unittest.TestCase):
