@@ -87,8 +87,11 @@ def title(parameters):
     if not parameters:
         return ""
     words = [parameters.get("Capsule/Shape", "capsule")]
-    for name, symbol in (("Scene/Shear number G", "$G$"), ("Scene/Reduced bending modulus", r"$\hat\kappa$"), ("Scene/Viscosity ratio", r"$\lambda$")):
-        if name in parameters and not (symbol == "$G$" and parameters.get("Scene/Flow") == "quiescent"):
+    if parameters.get("Scene/Flow", "shear") not in ("shear", "quiescent"):
+        words.append(parameters["Scene/Flow"])
+    number_of_flow = "Ca" if parameters.get("Scene/Scale modulus") == "shear" else "$G$"
+    for name, symbol in (("Scene/Shear number G", number_of_flow), ("Scene/Reduced bending modulus", r"$\hat\kappa$"), ("Scene/Viscosity ratio", r"$\lambda$")):
+        if name in parameters and not (symbol == number_of_flow and parameters.get("Scene/Flow") == "quiescent"):
             words.append(f"{symbol} = {parameters[name]}")
     if number(parameters.get("Scene/Reduced bending modulus", "0")) != 0:
         words.append(parameters.get("Capsule/Bending form", ""))

@@ -100,7 +100,7 @@ class Computation:
     """Runs of the program on a pool of threads."""
 
     def __init__(self, program, jobs, ranks):
-        self.program, self.jobs, self.ranks = str(program), jobs, ranks
+        self.program, self.jobs, self.ranks = str(program.resolve()), jobs, ranks
         self.progress, self.processes, self.stopped = Progress(), [], False
 
     def command(self, run, settings, folder):

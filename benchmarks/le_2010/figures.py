@@ -136,7 +136,8 @@ def draw(name, results, folder):
     file = pathlib.Path(folder) / f"{name}.png"
     wanted = results.of(name)
     if not any(result.series for result in wanted):
-        print(f"{name}: nothing to draw ({', '.join(sorted({result.state() for result in wanted}))})")
+        if any(result.record for result in wanted):
+            print(f"{name}: nothing to draw ({', '.join(sorted({result.state() for result in wanted}))})")
         return False
     figure = DRAWN[name](wanted)
     if figure is None:

@@ -8,8 +8,10 @@ import pathlib
 import numpy as np
 
 import motion
+import report_parts
 import runs
 import statements
+from report_parts import difference, show, table
 
 TITLES = {
     "fig01": "Relaxation in a liquid at rest",
@@ -26,24 +28,6 @@ TITLES = {
     "fig12": "Biconcave capsule, G = 0.1, viscosity ratio 4: snapshots",
 }
 REFERENCE_TIMES = (0.25, 0.75)
-
-
-def show(value, digits=5):
-    return "–" if value is None or isinstance(value, float) and math.isnan(value) else f"{value:.{digits}g}"
-
-
-def difference(value, reference):
-    """"value (+0.12 %)", for small numbers "value (+0.0012)", or the value alone."""
-    if math.isnan(value) or math.isnan(reference):
-        return show(value)
-    if abs(reference) < 0.01:
-        return f"{value:.5f} ({value - reference:+.5f})"
-    return f"{value:.5g} ({100 * (value / reference - 1):+.2f} %)"
-
-
-def table(head, rows):
-    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
-    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows]) + "\n"
 
 
 def short(result):
@@ -167,11 +151,21 @@ STATEMENTS_HEADING = "## What the paper says, and what these runs show\n"
 
 def former(file):
     """What the report says so far: {heading: section} and {(figure, statement): what was seen}."""
-    text = file.read_text() if file.is_file() else ""
-    parts = text.replace("\n## ", "\n\0## ").split("\0")[1:]
-    sections = {part.split("\n", 1)[0] + "\n": part.rstrip("\n") + "\n" for part in parts}
-    rows = [line.strip("| ").split(" | ") for line in sections.get(STATEMENTS_HEADING, "").splitlines() if line.startswith("| ")]
+    sections = report_parts.former_sections(file)
+    rows = report_parts.rows_of(sections.get(STATEMENTS_HEADING, ""))
     return sections, {(row[0], row[1]): row[2] for row in rows if len(row) == 3}
+
+
+def finer_runs(file, results, figure):
+    """Names of the runs of a figure that the file shows at a finer resolution than the results."""
+    sections, order = report_parts.former_sections(file), ["not run", *runs.RESOLUTIONS]
+    finer = []
+    for result in results.of(figure):
+        owner, name = result.name.split("/")
+        before = [cells[0].split(", ")[1] for cells in report_parts.rows_of(sections.get(heading(owner), "")) if cells[0].split(", ")[0] == name and ", " in cells[0]]
+        now = result.resolution if result.state() == "done" else "not run"
+        finer += [name] if any(resolution in order and order.index(resolution) > order.index(now) for resolution in before) else []
+    return finer
 
 
 def figures_of(where):

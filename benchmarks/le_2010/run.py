@@ -9,7 +9,8 @@ Without names all figures are computed. The parameter files are in the folders f
 output/le_2010/figures, the report to output/le_2010/report.md. A run that fails or that the program refuses does not stop the others; the report says so. The report is made of all runs that are there,
 those of earlier calls included, each at the finest resolution at which it was done.
 
-doc/le_2010.md and its figures change with --update-doc only: those figures that are named, or all, whose runs are all there. What was not computed stays as it is.
+doc/le_2010.md and its figures change with --update-doc only: those figures that are named, or all, whose runs are all there, none of them coarser than
+what doc/ shows. What was not computed stays as it is.
 """
 
 import argparse
@@ -45,16 +46,19 @@ def arguments():
 
 
 def update_doc(args, results):
-    """In doc/ the figures asked for whose runs are all there."""
+    """In doc/ the figures asked for whose runs are all there, none coarser than those shown so far."""
     doc = run_scenes.ROOT / "doc"
-    complete = []
+    renewed = []
     for name in sorted({name.split("/")[0] for name in args.names}) or runs.figure_names():
-        if results.are_complete(name):
-            figures.draw(name, results, doc / "figures/le_2010")
-            complete.append(name)
-        else:
+        finer = report.finer_runs(doc / "le_2010.md", results, name)
+        if not results.are_complete(name):
             print(f"{name}: stays as it is in doc/, not all of its runs are there")
-    report.write(doc / "le_2010.md", results, complete, "figures/le_2010", keep_others=True)
+        elif finer:
+            print(f"{name}: stays as it is in doc/, which has {', '.join(finer)} at a finer resolution")
+        else:
+            figures.draw(name, results, doc / "figures/le_2010")
+            renewed.append(name)
+    report.write(doc / "le_2010.md", results, renewed, "figures/le_2010", keep_others=True)
 
 
 def main():

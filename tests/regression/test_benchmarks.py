@@ -23,7 +23,7 @@ import numpy as np  # noqa: E402
 import run_files  # noqa: E402
 import run_scenes  # noqa: E402
 
-SCRIPTS = ["plot_run.py", "interface_study.py", "le_2010/run.py"]
+SCRIPTS = ["plot_run.py", "interface_study.py", "le_2010/run.py", "flows/run.py"]
 
 
 class Repository(unittest.TestCase):
@@ -71,13 +71,16 @@ class Le2010(Repository):
 
     def test_doc_changes_where_it_was_asked_to(self):
         before = self.doc()
-        said = self.run_scenes("fig04", "fig06/G0.005_k0", "--update-doc")
-        self.assertIn("fig06: stays as it is", said)
+        said = self.run_scenes("fig04", "fig06/G0.005_k0", "--quick", "--update-doc")
+        self.assertIn("fig04: stays as it is in doc/, which has G0.05_k0, G0.05_k0.01 at a finer resolution", said)
+        self.assertEqual(self.doc(), before)
+        said = self.run_scenes("fig04", "fig06/G0.005_k0", "--full", "--update-doc")
+        self.assertIn("fig06: stays as it is in doc/, not all of its runs are there", said)
         after = self.doc()
         changed = {name for name in {*before, *after} if before.get(name) != after.get(name)}
         self.assertEqual(changed, {"doc/le_2010.md", "doc/figures/le_2010/fig04.png"})
         old, new = (set(doc["doc/le_2010.md"].decode().splitlines()) for doc in (before, after))
-        self.assertTrue(any("G0.05_k0.0375, quick" in line for line in new - old))
+        self.assertTrue(any("| G0.05_k0.0375, full | steady | 10 | 0.29999" in line for line in new - old))
         others = [line for line in old - new if not line.startswith(("| G0.05_k", "| 4 |"))]
         self.assertEqual(others, [], "lines of other figures")
 
@@ -95,6 +98,63 @@ class Le2010(Repository):
         report = (self.root / "output/le_2010/report.md").read_text()
         self.assertIn("| G0.05_k0.01 | failed: tanktread: FAILED here |", report)
         self.assertIn("G0.05_k0.025, quick", report)
+
+
+class Flows(Repository):
+    """The stand-in's D is larger by (4/side)^3, everything else is the reference's."""
+
+    def run_scenes(self, *words):
+        return self.passes("flows/run.py", *words, "--program", str(self.program), "--ranks", "1")
+
+    def rows(self, report, scene):
+        """{first cell: others} of all tables of a scene."""
+        text = report.read_text().split(f"## {scene}\n")[1].split("\n## ")[0]
+        return {line.strip("| ").split(" | ")[0]: line.strip("| ").split(" | ")[1:] for line in text.splitlines() if line.startswith("| ") and not line.startswith("|  |")}
+
+    def test_comparison_with_the_references(self):
+        before = self.doc()
+        for resolution in ("--quick", "--wide"):
+            self.run_scenes(resolution)
+        self.assertEqual(self.doc(), before)
+        report = self.root / "output/flows/report.md"
+        same, nearer = "(+0.00 %)", "(+0.10 %)"
+        for scene, at in (("Planar extension", "D at 8"), ("Above a wall", "D at 30"), ("Plane Poiseuille flow", "D at 30"), ("A pair passing in shear", "D at 32")):
+            reference, quick, wide = self.rows(report, scene)[at]
+            self.assertIn("(+0.80 %)", quick, scene)
+            self.assertIn(nearer, wide, scene)
+        wall = self.rows(report, "Above a wall")
+        self.assertEqual(wall["z − z₀ at 30"], ["0.69491", f"0.69491 {same}", f"0.69491 {same}"])
+        self.assertEqual(wall["u_x at 10"], ["2.2056", f"2.2056 {same}", f"2.2056 {same}"])
+        self.assertEqual(self.rows(report, "Plane Poiseuille flow")["z − z₀ at 10"], ["-0.037475", f"-0.037475 {same}", f"-0.037475 {same}"])
+        self.assertEqual(self.rows(report, "A pair passing in shear")["largest offset"][:3], ["0.720", "0.72513", f"0.72513 {same}"])
+        self.assertEqual(self.rows(report, "A pair passing in shear")["smallest gap"][:3], ["–", "0.34215", f"0.34215 {same}"])
+        self.assertEqual(len(list((self.root / "output/flows/figures").glob("*.png"))), 5)
+
+    def test_doc_changes_where_it_was_asked_to(self):
+        self.run_scenes("wall", "--wide", "--update-doc")
+        text = (self.root / "doc/flows.md").read_text()
+        self.assertIn("## Above a wall", text)
+        self.assertNotIn("## Planar extension", text)
+        shutil.rmtree(self.root / "output")
+        said = self.run_scenes("wall", "planar_extension", "--quick", "--update-doc")
+        self.assertIn("wall: stays as it is in doc/, which has it at wide", said)
+        report = self.root / "doc/flows.md"
+        self.assertIn("## Planar extension", report.read_text())
+        self.assertEqual(report.read_text().split("## Above a wall")[1], text.split("## Above a wall")[1])
+
+    def test_what_is_left_of_a_failed_run_is_reported(self):
+        self.program.write_text(self.program.read_text().replace("exec", 'echo "tanktread: FAILED early"; exit 2\nexec'))
+        self.assertIn("wall: exit code 2: tanktread: FAILED early", self.run_scenes("wall"))
+        self.assertIn("No results: quick: tanktread: FAILED early.", (self.root / "output/flows/report.md").read_text())
+
+    def test_plots_of_several_capsules(self):
+        self.run_scenes("crossing_pair")
+        folder = self.root / "output/flows/quick/crossing_pair"
+        said = self.passes("plot_run.py", folder)
+        self.assertEqual({file.stem for file in folder.glob("*.png")}, {"deformation", "trajectory", "convergence", "contour", "suspension"})
+        self.assertIn("difference +0.800 %", said)
+        self.assertIn("deformation.png: 2 capsule(s)", said)
+        self.assertIn("contour.png: 2 capsule(s)", said)
 
 
 class Packages(Repository):
