@@ -57,7 +57,8 @@ def time_series(groups, columns):
 
 
 def split_by_G(results):
-    return [(f"G = {G:g}", [result for result in results if result.G == G]) for G in sorted({result.G for result in results})]
+    """Groups that have something to draw."""
+    return [(f"G = {G:g}", [result for result in results if result.G == G]) for G in sorted({result.G for result in results if result.series})]
 
 
 def relaxation_style(name):

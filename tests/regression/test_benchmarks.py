@@ -92,6 +92,10 @@ class Le2010(Repository):
         self.run_scenes("--draw")
         self.assertEqual(record.stat().st_mtime_ns, before)
 
+    def test_a_part_of_a_figure_is_drawn(self):
+        self.assertNotIn("No artists", self.run_scenes("fig03/G0.05_k0"))
+        self.assertTrue((self.root / "output/le_2010/figures/fig03.png").is_file())
+
     def test_a_run_that_fails_is_reported_and_does_not_stop_the_others(self):
         self.program.write_text(self.program.read_text().replace("exec", 'case "$1" in *k0.01.prm) echo "tanktread: FAILED here"; exit 2;; esac\nexec'))
         self.run_scenes("fig04")
