@@ -8,7 +8,8 @@
 flows       the program interface_study: errors of surface velocity and power, CPU seconds, mesh by mesh -> flows.csv
 steady      runs of tanktread until the shape is steady, in boxes of 20 a, 40 a and 80 a and with several time steps
 transients  runs of tanktread from the sphere at rest, with two time steps
-figures     error against h and against CPU seconds, D(t) and theta(t) beside the references -> the folder figures of the output; --figures doc/figures renews those of accuracy.md
+figures     error against h and against CPU seconds, D(t) and theta(t) beside the references -> the folder figures
+            of the output; --figures doc/figures renews those of accuracy.md
 tables      Markdown on the standard output, as in doc/accuracy.md
 
 All runs are on one rank, one after the other. A run whose folder has a finished log is not made again: delete the folder to repeat it. Figures and tables

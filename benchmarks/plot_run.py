@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Part of Tanktread: figures of one run, against reference solutions where there are any.
-"""Draw a run's folder: deformation.png, contour.png and convergence.png, where capsules move trajectory.png, of several suspension.png; written into the folder.
+"""Draw deformation.png, contour.png, convergence.png, where capsules move trajectory.png, of several suspension.png, into a run's folder.
 
     plot_run.py FOLDER [--reference FILE.csv ...]
 
-Reads history.csv, or history_1.csv, history_2.csv, ... of several capsules, contours.csv in the same way, suspension.csv and used_parameters.prm; whatever is missing is named and left out. Without
---reference the reference is looked for in benchmarks/reference: the file whose scene (flow, shape, G, khat, membrane law, ...) is the run's. Another run's history.csv is a reference as well.
-Of several capsules the first is compared.
+Reads history.csv, or history_1.csv, history_2.csv, ... of several capsules, contours.csv in the same way, suspension.csv and used_parameters.prm; whatever
+is missing is named and left out. Without --reference the reference is looked for in benchmarks/reference: the file whose scene (flow, shape, G, khat,
+membrane law, ...) is the run's. Another run's history.csv is a reference as well. Of several capsules the first is compared.
 """
 
 import argparse
@@ -24,7 +24,8 @@ import matplotlib.pyplot as plt  # noqa: E402
 import matplotlib.ticker  # noqa: E402
 import numpy as np  # noqa: E402
 
-from run_files import contours_by_time, find_references, interpolated, number, of_each_capsule, read_parameters, read_table, standard_columns, without_jumps  # noqa: E402
+from run_files import contours_by_time, find_references, interpolated, number, of_each_capsule  # noqa: E402
+from run_files import read_parameters, read_table, standard_columns, without_jumps  # noqa: E402
 
 RUN, SECOND, REFERENCES = "#0072B2", "#D55E00", ["#222222", "#D55E00", "#009E73", "#CC79A7"]
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Part of Tanktread: a Python that has what a script needs.
-"""need("numpy", "matplotlib"), called before they are imported, starts the script again with another Python when this one lacks them, or ends it with one line that says what to install.
+"""need("numpy", "matplotlib"), called before they are imported, starts the script again with another Python when this one lacks them, or ends it with one
+line that says what to install.
 
 The first python3 on PATH is often one of a version manager or a conda environment, while the packages of the system belong to /usr/bin/python3.
 """
@@ -47,4 +48,5 @@ def need(*packages):
                 sys.stdout.flush()
                 os.execv(python, [python, *sys.argv])
     debian = " ".join(f"python3-{package}" for package in missing)
-    sys.exit(f"{script}: {sys.executable} has no {' and no '.join(missing)}, nor has any other python3 here: install {debian} (Debian), or python3 -m pip install {' '.join(missing)}")
+    install = f"install {debian} (Debian), or python3 -m pip install {' '.join(missing)}"
+    sys.exit(f"{script}: {sys.executable} has no {' and no '.join(missing)}, nor has any other python3 here: {install}")

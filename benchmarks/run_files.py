@@ -83,7 +83,7 @@ def without_jumps(theta):
 
 
 def interpolated(times, values, wanted):
-    """Values at the wanted times (a number or an array) by cubics through the four rows around each; NaN outside the rows. Rows that are not numbers are left out."""
+    """Values at the wanted times (a number or an array) by cubics through the four rows around each that are numbers; NaN outside the rows."""
     defined = np.isfinite(values)
     times, values, wanted = times[defined], values[defined], np.asarray(wanted, dtype=float)
     if len(times) < 4:

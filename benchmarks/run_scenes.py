@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Part of Tanktread: computes the scenes of a benchmark, several runs at a time.
-"""A benchmark is a folder of parameter files that hold physics and times; how fine and in which box comes from its script, as settings. Results go to output/<benchmark>/<resolution>/<name>, with run.json:
-what was computed, how it ended."""
+"""A benchmark is a folder of parameter files that hold physics and times; how fine and in which box comes from its script, as settings. Results go to
+output/<benchmark>/<resolution>/<name>, with run.json: what was computed, how it ended."""
 
 import concurrent.futures
 import json

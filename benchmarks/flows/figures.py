@@ -9,10 +9,11 @@ from run_files import without_jumps
 
 COLORS = {"quick": "#E69F00", "wide": "#56B4E9", "full": "#0072B2"}
 REFERENCE = {"color": "#222222", "linestyle": "--", "linewidth": 1.1, "zorder": 5, "label": "boundary integral"}
-LABELS = {"x": "$x/a$", "z": "$z/a$", "z_moved": "$(z - z_0)/a$", "u_x": r"$u_x$", "u_z": r"$u_z$", "D": "$D$", "theta": r"$\theta/\pi$", "L": "$L/a$", "B": "$B/a$", "W": "$W/a$"}
-PANELS = {"planar_extension": ("D", "L", "B", "W"), "uniaxial_extension": ("D", "L", "B", "W"), "parabola": ("z_moved", "u_z", "D", "theta"), "wall": ("z_moved", "u_z", "D", "theta")}
+LABELS = {"z_moved": "$(z - z_0)/a$", "u_z": r"$u_z$", "D": "$D$", "theta": r"$\theta/\pi$", "L": "$L/a$", "B": "$B/a$", "W": "$W/a$"}
+SHAPE, WAY = ("D", "L", "B", "W"), ("z_moved", "u_z", "D", "theta")
+PANELS = {"planar_extension": SHAPE, "uniaxial_extension": SHAPE, "parabola": WAY, "wall": WAY}
 
-# Points of the published curve (Lac, Morel, Barthes-Biesel 2007), offset over the diameter against the distance along the flow over the diameter, within 2 %: first, highest, last.
+# Points of the published curve (Lac, Morel, Barthes-Biesel 2007), within 2 %: distance along the flow and offset, both over the diameter.
 PUBLISHED = {"at first": (-4, 0.252), "largest": (0.43, 0.720), "at the end": (5.7, 0.546)}
 
 

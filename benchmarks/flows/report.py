@@ -17,8 +17,9 @@ Scenes beside one capsule in shear, against the boundary-integral solutions of `
     benchmarks/flows/run.py [--quick | --wide | --full] --update-doc
 
 from the results that it finds; the parameter files are in `benchmarks/flows`. {resolutions}.
-Neo-Hookean spheres with prestress, viscosity ratio 1, no bending; lengths in a, times in 1/rate. In brackets the difference from the reference at the same time, by cubics through the rows of both; the reference has no box, so
-that the box is part of it: quick and wide differ by the box alone. Dashed in the figures: the reference.
+Neo-Hookean spheres with prestress, viscosity ratio 1, no bending; lengths in a, times in 1/rate. In brackets the difference from the reference at the same
+time, by cubics through the rows of both; the reference has no box, so that the box is part of it: quick and wide differ by the box alone. Dashed in the
+figures: the reference.
 """
 
 
@@ -32,7 +33,8 @@ def values_table(name, results, wanted):
             rows.append([f"{symbol} at {time:g}", show(value), *(difference(result.at(time, quantity), value, 1e-4) for result in results)])
         scale = np.nanmax(np.abs(wanted[quantity][wanted["time"] <= scene.times[-1]]))
         differences = [result.largest_difference(quantity, wanted) for result in results]
-        rows.append([f"{symbol}: largest difference", f"of at most {show(float(scale), 4)}", *(f"{100 * value / scale:.3g} % at {time:.3g}" for value, time in differences)])
+        shares = [f"{100 * value / scale:.3g} % at {time:.3g}" for value, time in differences]
+        rows.append([f"{symbol}: largest difference", f"of at most {show(float(scale), 4)}", *shares])
     return table(["", "reference", *(result.resolution for result in results)], rows)
 
 
@@ -47,10 +49,12 @@ def pair_table(results, wanted):
             ["where Δx/2a is", show(at_peak[0]), *(difference(peak[0], at_peak[0]) for peak in peaks)],
             ["offset at the end", show(float(z[-1])), *(f"{difference(float(dz[-1]), float(z[-1]))}, Δx/2a = {dx[-1]:.3g}" for dx, dz in offsets)]]
     gap = -scenes.peak(wanted["time"], -wanted["gap"])[1]
-    gaps = [-scenes.peak(result.suspension["time"], -result.suspension["smallest_gap"])[1] if "smallest_gap" in result.suspension else np.nan for result in results]
-    rows.append(["smallest gap", show(gap), *(difference(float(value), gap) for value in gaps)])
-    published = ["0.252", "0.720", "0.43", "0.546", "–"]
-    return table(["", "published, ± 2 %", "reference", *(result.resolution for result in results)], [[row[0], said, *row[1:]] for row, said in zip(rows, published)])
+    gaps = [result.smallest_gap() for result in results]
+    rows.append(["smallest gap", show(gap), *(difference(value, gap) for value in gaps)])
+    (_, first), (where, largest), (_, last) = figures.PUBLISHED.values()
+    published = [f"{first:.3f}", f"{largest:.3f}", f"{where:.2f}", f"{last:.3f}", "–"]
+    head = ["", "published, ± 2 %", "reference", *(result.resolution for result in results)]
+    return table(head, [[row[0], said, *row[1:]] for row, said in zip(rows, published)])
 
 
 def heading(name):
@@ -61,13 +65,15 @@ def section(name, results, figures_folder):
     """Results of the scene at all resolutions."""
     scene, shown = scenes.SCENES[name], [result for result in results if result.capsules]
     if not shown:
-        return "\n".join([heading(name), scene.about + "\n", "No results: " + "; ".join(f"{result.resolution}: {result.state()}" for result in results if result.record) + ".\n"])
+        states = "; ".join(f"{result.resolution}: {result.state()}" for result in results if result.record)
+        return "\n".join([heading(name), scene.about + "\n", f"No results: {states}.\n"])
     wanted, notes = scenes.reference(name)
     text = [heading(name), scene.about + "\n", f"![{scene.title}]({figures_folder}/{name}.png)\n"]
     if name == "crossing_pair":
         text.append(pair_table([result for result in shown if len(result.capsules) > 1], wanted))
     text.append(values_table(name, shown, wanted))
-    runs = [f"{result.resolution} {result.record['seconds']:.0f} s on {result.record['ranks']} rank(s)" + ("" if result.state() == "done" else f", {result.state()}") for result in results if result.record]
+    records = [(result, result.record) for result in results if result.record]
+    runs = [f"{result.resolution} {record['seconds']:.0f} s on {record['ranks']} rank(s), {result.state()}" for result, record in records]
     errors = next(value for key, value in notes.items() if key.startswith("estimated errors"))
     text.append(f"Runs: {'; '.join(runs)}. Estimated errors of the reference: {errors}.\n")
     return "\n".join(text)
@@ -80,7 +86,8 @@ def resolutions_in(section_text):
 
 
 def write(file, results, names, figures_folder, keep_others=False):
-    """The report of these scenes, drawn in `figures_folder` as seen from the file; other sections stay as they are in the file or are left out. `results`: {name: [Result]}."""
+    """The report of these scenes, drawn in `figures_folder` as seen from the file; other sections stay as they are in the file or are left out. `results`:
+    {name: [Result]}."""
     sections = report_parts.former_sections(file) if keep_others else {}
     resolutions = "; ".join(f"`{name}`: {scenes.described(name)}" for name in scenes.RESOLUTIONS)
     text = [INTRODUCTION.format(resolutions=resolutions)]

@@ -1,14 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Part of Tanktread: computes, draws and reports scenes of several capsules and of flows other than shear alone.
-"""Compute a pair that passes in shear, planar and uniaxial extension, plane Poiseuille flow and a capsule above a wall, and compare them with independent solutions.
+"""Compute a pair that passes in shear, planar and uniaxial extension, plane Poiseuille flow and a capsule above a wall, and compare them with independent
+solutions.
 
     run.py [wall ...] [--quick | --wide | --full] [--jobs N] [--ranks N] [--resume] [--draw] [--update-doc]
 
-Without names all scenes are computed. The parameter files are beside this script, results go to output/flows/<resolution>/<scene>, figures to output/flows/figures, the report to output/flows/report.md. A
-run that fails or that the program refuses does not stop the others; the report says so. The report is made of all runs that are there, at all resolutions, those of earlier calls included.
+Without names all scenes are computed. The parameter files are beside this script, results go to output/flows/<resolution>/<scene>, figures to
+output/flows/figures, the report to output/flows/report.md. A run that fails or that the program refuses does not stop the others; the report says so. The
+report is made of all runs that are there, at all resolutions, those of earlier calls included.
 
-doc/flows.md and its figures change with --update-doc only: those scenes that are named, or all, that have results at every resolution that doc/ shows. What was not computed stays as it is.
+doc/flows.md and its figures change with --update-doc only: those scenes that are named, or all, that have results at every resolution that doc/ shows. What
+was not computed stays as it is.
 """
 
 import argparse

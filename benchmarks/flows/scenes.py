@@ -21,7 +21,7 @@ RESOLUTIONS = {"quick": (0.3125, 2, 20), "wide": (0.3125, 2, 40), "full": (0.156
 
 @dataclasses.dataclass(frozen=True)
 class Scene:
-    """A parameter file and what its results are compared with. Quantities are those of both files; `times`: for which the report gives numbers, the last is the end."""
+    """What the results of a parameter file are compared with, in which quantities. `times`: for which the report gives numbers, the last is the end."""
     title: str
     about: str
     reference: str
@@ -32,7 +32,8 @@ class Scene:
 SCENES = {
     "crossing_pair": Scene(
         "A pair passing in shear",
-        "Ca = 0.45, prestress 0.05, centres at (∓4, 0, ±0.25). Numbers are those of the first capsule. The box is 40a long along the flow in any case: at the end the capsules are 20a apart.",
+        "Ca = 0.45, prestress 0.05, centres at (∓4, 0, ±0.25). Numbers are those of the first capsule. The box is 40a long along the flow in any case: "
+        "at the end the capsules are 20a apart.",
         "crossing_pair_Ca0.45_prestress0.05.csv", ("x", "z", "D", "theta"), (5, 15, 20, 32)),
     "planar_extension": Scene(
         "Planar extension", "(x, 0, −z) on all faces of the box, Ca = 0.1, prestress 0.05; at the end the shape is steady.",
@@ -41,10 +42,11 @@ SCENES = {
         "Uniaxial extension", "(x, −y/2, −z/2) on all faces of the box, Ca = 0.1, prestress 0.05; at the end the shape is steady.",
         "uniaxial_extension_Ca0.1_prestress0.05.csv", ("D", "L", "B", "W"), (1, 8)),
     "parabola": Scene(
-        "Plane Poiseuille flow", "(H/2)(1 − z²/H²) along x without walls, H = 5, Ca = 1, prestress 0.05, from z = 1.5; the box is wider than the parabola. `z_moved` = z − 1.5.",
+        "Plane Poiseuille flow", "(H/2)(1 − z²/H²) along x without walls, H = 5, Ca = 1, prestress 0.05, from z₀ = 1.5; the box is wider than the parabola.",
         "plane_poiseuille_Ca1_H5_z1.5_prestress0.05.csv", ("z_moved", "u_x", "u_z", "D", "theta"), (5, 10, 30)),
     "wall": Scene(
-        "Above a wall", "Shear, Ca = 0.3, prestress 0.05, centre at a distance of 2 from the lower wall at first. `z_moved` is the lift; u_x is seen from the wall. The upper wall is not in the reference.",
+        "Above a wall", "Shear, Ca = 0.3, prestress 0.05, centre at a distance of 2 from the lower wall at first; u_x is seen from that wall. "
+        "The upper wall is not in the reference.",
         "wall_Ca0.3_d2_prestress0.05.csv", ("z_moved", "u_x", "u_z", "D", "theta"), (5, 10, 30)),
 }
 
@@ -52,7 +54,8 @@ SCENES = {
 def settings(name, resolution):
     """What a resolution adds to the parameter file."""
     cell, level, side = RESOLUTIONS[resolution]
-    result = {"Fluid mesh/Finest cell": f"{cell:g}", "Shell mesh/Level": str(level), "Scene/Box side": f"40, {side}, {side}" if name == "crossing_pair" else str(side)}
+    box = f"40, {side}, {side}" if name == "crossing_pair" else str(side)
+    result = {"Fluid mesh/Finest cell": f"{cell:g}", "Shell mesh/Level": str(level), "Scene/Box side": box}
     if name == "wall":
         result["Capsule/Centres"] = f"0, 0, {2 - side / 2:g}"
     return result
@@ -100,7 +103,9 @@ class Result:
 
     def state(self):
         """"done", or what became of it."""
-        return "not run" if self.record is None else "done" if self.record["exit_code"] == 0 else self.record["message"] or f"exit code {self.record['exit_code']}"
+        if self.record is None:
+            return "not run"
+        return "done" if self.record["exit_code"] == 0 else self.record["message"] or f"exit code {self.record['exit_code']}"
 
     def at(self, time, quantity):
         """Value of the first capsule at a time, by a cubic through the rows around it."""
@@ -115,6 +120,10 @@ class Result:
             return np.nan, np.nan
         worst = np.nanargmax(differences)
         return differences[worst], series["time"][worst]
+
+    def smallest_gap(self):
+        """Between the capsules, by a parabola; NaN where suspension.csv is missing."""
+        return float(-peak(self.suspension["time"], -self.suspension["smallest_gap"])[1]) if "smallest_gap" in self.suspension else np.nan
 
     def offset(self):
         """(distance along the flow, distance across) of the first from the second of a pair, over 2a; rows that both have."""

@@ -12,7 +12,7 @@ import snapshots
 from run_files import without_jumps
 
 COLORS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00"]
-LABELS = {"D_xz": r"$D_{xz}$", "theta": r"$\theta/\pi$", "theta_continuous": r"$\theta/\pi$, continuous", "delta": r"$\delta/\pi$", "area": r"area / initial area"}
+LABELS = {"D_xz": r"$D_{xz}$", "theta": r"$\theta/\pi$", "delta": r"$\delta/\pi$", "area": r"area / initial area"}
 GAMMA_T = r"$\dot\gamma t$"
 
 

@@ -162,7 +162,8 @@ def finer_runs(file, results, figure):
     finer = []
     for result in results.of(figure):
         owner, name = result.name.split("/")
-        before = [cells[0].split(", ")[1] for cells in report_parts.rows_of(sections.get(heading(owner), "")) if cells[0].split(", ")[0] == name and ", " in cells[0]]
+        rows = report_parts.rows_of(sections.get(heading(owner), ""))
+        before = [cells[0][len(name) + 2:] for cells in rows if cells[0].startswith(f"{name}, ")]
         now = result.resolution if result.state() == "done" else "not run"
         finer += [name] if any(resolution in order and order.index(resolution) > order.index(now) for resolution in before) else []
     return finer
@@ -177,7 +178,8 @@ def figures_of(where):
 
 
 def write(file, results, figures, figures_folder, keep_others=False):
-    """The report of these figures, drawn in `figures_folder` as seen from the file. Sections of other figures, and what was seen of them, stay as they are in the file or are left out."""
+    """The report of these figures, drawn in `figures_folder` as seen from the file. Sections of other figures, and what was seen of them, stay as they are in
+    the file or are left out."""
     sections, seen_before = former(file) if keep_others else ({}, {})
     described = "; ".join(f"`{name}` has {runs.described(settings)}" for name, settings in runs.RESOLUTIONS.items())
     text = [INTRODUCTION.format(resolutions=described)]

@@ -5,9 +5,10 @@
 
     run.py [fig05 ...] [--quick | --full] [--jobs N] [--ranks N] [--resume] [--draw] [--update-doc]
 
-Without names all figures are computed. The parameter files are in the folders fig01 ... fig12 beside this script, results go to output/le_2010/<resolution>/<figure>/<run>, figures to
-output/le_2010/figures, the report to output/le_2010/report.md. A run that fails or that the program refuses does not stop the others; the report says so. The report is made of all runs that are there,
-those of earlier calls included, each at the finest resolution at which it was done.
+Without names all figures are computed. The parameter files are in the folders fig01 ... fig12 beside this script, results go to
+output/le_2010/<resolution>/<figure>/<run>, figures to output/le_2010/figures, the report to output/le_2010/report.md. A run that fails or that the program
+refuses does not stop the others; the report says so. The report is made of all runs that are there, those of earlier calls included, each at the finest
+resolution at which it was done.
 
 doc/le_2010.md and its figures change with --update-doc only: those figures that are named, or all, whose runs are all there, none of them coarser than
 what doc/ shows. What was not computed stays as it is.

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Part of Tanktread: runs a parameter file and checks how it ends.
-"""The last row of history.csv is compared with values from an independent solution (--expect D_xz=0.38,0.05: within 5 %), the volume error of every row with --volume-error; or
-the run has to fail with a given exit code and message (--exit-code 2 --message TEXT) and leave its last good state."""
+"""The last row of history.csv is compared with values from an independent solution (--expect D_xz=0.38,0.05: within 5 %), the volume error of every row with
+--volume-error; or the run has to fail with a given exit code and message (--exit-code 2 --message TEXT) and leave its last good state."""
 
 import argparse
 import csv

@@ -3,15 +3,17 @@
 # Part of Tanktread: stands in for the program where scripts are tested.
 """Takes the program's command line, FILE.prm --set Section/Parameter=value ..., and leaves a folder like one of its own.
 
-The scenes of benchmarks/flows get their reference solution, read off at other times, in the frame of the box, with D larger by the factor 1 + (4/side)^3; the rest a capsule whose D goes to 0.3.
+The scenes of benchmarks/flows get their reference solution, read off at other times, in the frame of the box, with D larger by the factor 1 + (4/side)^3;
+the rest a capsule whose D goes to 0.3.
 """
 
 import math
 import pathlib
 import sys
 
-COLUMNS = ("time D_xz theta L B W volume volume_error area membrane_energy bending_energy dissipation newton_iterations linear_iterations wall_time alpha delta pressure_jump step cells "
-           "theta_continuous S_xx S_yy S_zz S_xy S_xz S_yz intrinsic_viscosity N1 N2 x y z u_x u_y u_z").split()
+COLUMNS = ("time D_xz theta L B W volume volume_error area membrane_energy bending_energy dissipation newton_iterations linear_iterations wall_time "
+           "alpha delta pressure_jump step cells theta_continuous S_xx S_yy S_zz S_xy S_xz S_yz intrinsic_viscosity N1 N2 x y z u_x u_y u_z").split()
+SUSPENSION_COLUMNS = "time relative_viscosity N1 N2 smallest_gap wall_gap volume_fraction".split()
 REFERENCES = {"crossing_pair": "crossing_pair_Ca0.45", "planar_extension": "planar_extension_Ca0.1", "uniaxial_extension": "uniaxial_extension_Ca0.1",
               "parabola": "plane_poiseuille_Ca1_H5_z1.5", "wall": "wall_Ca0.3_d2"}
 
@@ -26,7 +28,8 @@ def simple():
     for step in range(41):
         t = 0.25 * step
         D = 0.3 * (1 - math.exp(-t))
-        yield {"time": t, "D_xz": D, "theta": 0.25 - 0.1 * D, "L": 1 + D, "B": 1 - D, "W": 1, "volume": 4.18, "area": 12.5 + D, "step": 0.25, "alpha": 0.1 * t, "delta": 0.1 * t, "intrinsic_viscosity": 2.5}
+        yield {"time": t, "D_xz": D, "theta": 0.25 - 0.1 * D, "L": 1 + D, "B": 1 - D, "W": 1, "volume": 4.18, "area": 12.5 + D, "step": 0.25, "alpha": 0.1 * t,
+               "delta": 0.1 * t, "intrinsic_viscosity": 2.5}
 
 
 def from_reference(file, side, end):
@@ -65,7 +68,7 @@ def main():
         for i, capsule in enumerate((rows, second)):
             write(folder / f"history_{i + 1}.csv", COLUMNS, capsule)
             write(folder / f"contours_{i + 1}.csv", ["time", "x", "z"], circles(capsule))
-        write(folder / "suspension.csv", ["time", "relative_viscosity", "N1", "N2", "smallest_gap", "wall_gap", "volume_fraction"], [{**row, "smallest_gap": row["gap"], "relative_viscosity": 1.1} for row in rows])
+        write(folder / "suspension.csv", SUSPENSION_COLUMNS, [{**row, "smallest_gap": row["gap"], "relative_viscosity": 1.1} for row in rows])
     else:
         write(folder / "history.csv", COLUMNS, rows)
         write(folder / "contours.csv", ["time", "x", "z"], circles(rows))

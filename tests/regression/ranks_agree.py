@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Part of Tanktread: a run gives the same history.csv on any number of ranks.
-"""Runs a parameter file once for each number of ranks and compares all columns of history.csv, but iterations and times, with those of the first run. What the solvers' tolerances leave open
-differs between numbers of ranks: they have to be tight."""
+"""Runs a parameter file once for each number of ranks and compares all columns of history.csv, but iterations and times, with those of the first run. What
+the solvers' tolerances leave open differs between numbers of ranks: they have to be tight."""
 
 import argparse
 import csv

@@ -113,7 +113,8 @@ class Flows(Repository):
     def rows(self, report, scene):
         """{first cell: others} of all tables of a scene."""
         text = report.read_text().split(f"## {scene}\n")[1].split("\n## ")[0]
-        return {line.strip("| ").split(" | ")[0]: line.strip("| ").split(" | ")[1:] for line in text.splitlines() if line.startswith("| ") and not line.startswith("|  |")}
+        rows = [line.strip("| ").split(" | ") for line in text.splitlines() if line.startswith("| ") and not line.startswith("|  |")]
+        return {cells[0]: cells[1:] for cells in rows}
 
     def test_comparison_with_the_references(self):
         before = self.doc()
@@ -122,7 +123,8 @@ class Flows(Repository):
         self.assertEqual(self.doc(), before)
         report = self.root / "output/flows/report.md"
         same, nearer = "(+0.00 %)", "(+0.10 %)"
-        for scene, at in (("Planar extension", "D at 8"), ("Above a wall", "D at 30"), ("Plane Poiseuille flow", "D at 30"), ("A pair passing in shear", "D at 32")):
+        ends = {"Planar extension": "D at 8", "Above a wall": "D at 30", "Plane Poiseuille flow": "D at 30", "A pair passing in shear": "D at 32"}
+        for scene, at in ends.items():
             reference, quick, wide = self.rows(report, scene)[at]
             self.assertIn("(+0.80 %)", quick, scene)
             self.assertIn(nearer, wide, scene)
@@ -205,7 +207,8 @@ class Files(unittest.TestCase):
         self.assertTrue(np.isnan(run_files.interpolated(times, values, 1.2)))
 
     def test_references_are_those_of_the_scene(self):
-        pair = {"Scene/Shear number G": "0.45", "Scene/Scale modulus": "shear", "Capsule/Prestress": "0.05", "Capsule/Centres": "-4, 0, 0.25; 4, 0, -0.25", "Scene/Reduced bending modulus": "0"}
+        pair = {"Scene/Shear number G": "0.45", "Scene/Scale modulus": "shear", "Capsule/Prestress": "0.05", "Capsule/Centres": "-4, 0, 0.25; 4, 0, -0.25",
+                "Scene/Reduced bending modulus": "0"}
         names = lambda parameters: [file.name for file in run_files.find_references(parameters)]  # noqa: E731
         self.assertEqual(names(pair), ["crossing_pair_Ca0.45_prestress0.05.csv"])
         for name, value in (("Capsule/Centres", "0, 0, 0"), ("Capsule/Prestress", "0"), ("Scene/Scale modulus", "Young"), ("Scene/Reynolds number", "1")):
