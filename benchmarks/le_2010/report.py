@@ -3,7 +3,6 @@
 """write(file, results, ...): what the runs show, figure by figure, and for each statement in the text of Le (2010)."""
 
 import math
-import pathlib
 
 import numpy as np
 
