@@ -8,7 +8,8 @@
 flows       the program interface_study: errors of surface velocity and power, CPU seconds, mesh by mesh -> flows.csv
 steady      runs of tanktread until the shape is steady, in boxes of 20 a, 40 a and 80 a and with several time steps
 transients  runs of tanktread from the sphere at rest, with two time steps
-figures     error against h and against CPU seconds, D(t) and theta(t) beside the references -> doc/figures
+figures     error against h and against CPU seconds, D(t) and theta(t) beside the references -> the folder figures
+            of the output; --figures doc/figures renews those of accuracy.md
 tables      Markdown on the standard output, as in doc/accuracy.md
 
 All runs are on one rank, one after the other. A run whose folder has a finished log is not made again: delete the folder to repeat it. Figures and tables
@@ -23,14 +24,16 @@ import pathlib
 import subprocess
 import sys
 
-import matplotlib
+import python_packages
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
-import matplotlib.ticker
-import numpy as np
+python_packages.need("numpy", "matplotlib")
 
-from plot_run import read_table
+import plot_style  # noqa: E402, F401
+import matplotlib.pyplot as plt  # noqa: E402
+import matplotlib.ticker  # noqa: E402
+import numpy as np  # noqa: E402
+
+from run_files import read_table  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 REFERENCES = ROOT / "benchmarks/reference"
@@ -340,13 +343,14 @@ def arguments():
     parser.add_argument("--program", type=pathlib.Path, help="tanktread, if not that of the build")
     parser.add_argument("--parts", default=",".join(PARTS))
     parser.add_argument("--output", type=pathlib.Path, default=pathlib.Path("output/interface_study"))
-    parser.add_argument("--figures", type=pathlib.Path, default=ROOT / "doc/figures", help="folder of the figures")
+    parser.add_argument("--figures", type=pathlib.Path, help="folder of the figures, if not that of the output")
     parser.add_argument("--nice", action="store_true", help="with low priority")
     args = parser.parse_args()
     unknown = set(args.parts.split(",")) - set(PARTS)
     if unknown:
         parser.error(f"--parts: got {', '.join(sorted(unknown))}; allowed: {', '.join(PARTS)}")
     args.output = args.output.resolve()
+    args.figures = args.figures or args.output / "figures"
     return args
 
 

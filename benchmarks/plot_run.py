@@ -1,81 +1,35 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Part of Tanktread: figures of one run, against reference solutions where there are any.
-"""Draw a run's folder: deformation.png, contour.png and convergence.png, written into the folder.
+"""Draw deformation.png, contour.png, convergence.png, where capsules move trajectory.png, of several suspension.png, into a run's folder.
 
     plot_run.py FOLDER [--reference FILE.csv ...]
 
-Reads history.csv, contours.csv and used_parameters.prm; whatever is missing is named and left out. Without --reference the reference is looked
-for in benchmarks/reference: the file whose scene (flow, shape, G, khat, membrane law, bending form, reference curvature, viscosity ratio) is the
-run's. Another run's history.csv is a reference as well.
+Reads history.csv, or history_1.csv, history_2.csv, ... of several capsules, contours.csv in the same way, suspension.csv and used_parameters.prm; whatever
+is missing is named and left out. Without --reference the reference is looked for in benchmarks/reference: the file whose scene (flow, shape, G, khat,
+membrane law, ...) is the run's. Another run's history.csv is a reference as well. Of several capsules the first is compared.
 """
 
 import argparse
-import csv
 import math
 import pathlib
-import re
 import sys
 
-import matplotlib
+import python_packages
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
-import matplotlib.ticker
-import numpy as np
+python_packages.need("numpy", "matplotlib")
 
-REFERENCE_FOLDER = pathlib.Path(__file__).resolve().parent / "reference"
+import plot_style  # noqa: E402, F401
+import matplotlib.pyplot as plt  # noqa: E402
+import matplotlib.ticker  # noqa: E402
+import numpy as np  # noqa: E402
+
+from run_files import contours_by_time, find_references, interpolated, number, of_each_capsule  # noqa: E402
+from run_files import read_parameters, read_table, standard_columns, without_jumps  # noqa: E402
+
 RUN, SECOND, REFERENCES = "#0072B2", "#D55E00", ["#222222", "#D55E00", "#009E73", "#CC79A7"]
 
-plt.rcParams.update({
-    "font.size": 11, "axes.grid": True, "grid.color": "#e4e4e4", "grid.linewidth": 0.8, "axes.axisbelow": True,
-    "axes.spines.top": False, "axes.spines.right": False, "axes.edgecolor": "#666666", "legend.frameon": False,
-    "legend.fontsize": 10, "lines.linewidth": 1.8, "figure.constrained_layout.use": True, "savefig.dpi": 150,
-})
-
-
 # ---------------------------------------------------------------------------------------------------------------------- reading
-def read_table(file):
-    """Columns of a csv file with one header line as {name: array}, and its `# key: value` lines as {key: value}."""
-    notes, lines = {}, []
-    for line in file.read_text().splitlines():
-        if line.startswith("#"):
-            key, colon, value = line[1:].partition(":")
-            if colon:
-                notes[key.strip()] = value.strip()
-        elif line.strip():
-            lines.append(line)
-    rows = list(csv.reader(lines, skipinitialspace=True))
-    if not rows:
-        return {}, notes
-    names = [name.strip() for name in rows[0]]
-    body = [row for row in rows[1:] if len(row) == len(names)]  # the last line of a killed run may be cut off
-    columns = {name: np.array([number(row[i]) for row in body]) for i, name in enumerate(names)}
-    return (columns if body else {}), notes
-
-
-def number(text):
-    try:
-        return float(text)
-    except ValueError:
-        return math.nan
-
-
-def read_parameters(file):
-    """A deal.II parameter file as {"Section/Parameter": value}."""
-    parameters, path = {}, []
-    for line in file.read_text().splitlines():
-        line = line.split("#")[0].strip()
-        if line.startswith("subsection "):
-            path.append(line[len("subsection "):].strip())
-        elif line == "end" and path:
-            path.pop()
-        elif line.startswith("set ") and "=" in line:
-            name, value = line[len("set "):].split("=", 1)
-            parameters["/".join(path + [name.strip()])] = value.strip()
-    return parameters
-
-
 def load(folder, name, reader):
     """The file's content, or None with a line that says it is missing."""
     file = folder / name
@@ -85,56 +39,24 @@ def load(folder, name, reader):
     return reader(file)
 
 
+def load_capsules(folder, stem, needed):
+    """Tables of all capsules in their order; those without the columns needed are named and left out."""
+    files = of_each_capsule(folder, stem)
+    if not files:
+        print(f"{stem}.csv: missing in {folder}")
+    tables = [(file, read_table(file)[0]) for file in files]
+    for file, table in tables:
+        if not all(name in table for name in needed):
+            print(f"{file.name}: has no rows or no columns {', '.join(needed)}, left out")
+    return [table for _, table in tables if all(name in table for name in needed)]
+
+
 # ------------------------------------------------------------------------------------------------------------------- references
-SCENE = {  # key in a reference file: (parameter of a run, its value where the run's file does not say)
-    "flow": ("Scene/Flow", "shear"),
-    "G": ("Scene/Shear number G", "0.05"),
-    "khat": ("Scene/Reduced bending modulus", "0"),
-    "viscosity ratio": ("Scene/Viscosity ratio", "1"),
-    "shape": ("Capsule/Shape", "sphere"),
-    "axes": ("Capsule/Axes", "2, 2, 1"),
-    "aspect ratio": ("Capsule/Aspect ratio", "0.6"),
-    "inclination": ("Capsule/Inclination", "0"),
-    "membrane law": ("Capsule/Membrane law", "neo-Hookean"),
-    "bending form": ("Capsule/Bending form", "variational"),
-    "reference curvature": ("Capsule/Reference curvature", "flat"),
-}
-
-
-def agree(wanted, found):
-    """Whether two parameter texts mean the same: word by word, numbers to 1e-4, lists of axes up to a factor."""
-    if found is None:
-        return False
-    a, b = ([number(word) for word in re.split(r"[\s,:]+", text.strip())] for text in (wanted, found))
-    if any(map(math.isnan, a + b)):
-        return wanted.lower() == found.lower()
-    if len(a) > 1:
-        a, b = ([value / max(values) for value in values] for values in (a, b))
-    return len(a) == len(b) and np.allclose(a, b, rtol=1e-4, atol=1e-12)
-
-
-def matches(notes, parameters):
-    """Whether a reference file's notes describe the run's scene."""
-    if "flow" not in notes:
-        return False
-    khat = number(notes.get("khat", "nan"))
-    for key, (parameter, default) in SCENE.items():
-        if key not in notes or notes[key] == "none":
-            continue
-        if key in ("bending form", "reference curvature") and khat == 0:
-            continue
-        if key == "khat" and math.isnan(khat):  # relaxation: any modulus, the caller says what that means
-            continue
-        if not agree(notes[key], parameters.get(parameter, default)):
-            return False
-    return True
-
-
-def find_references(parameters):
+def chosen_references(parameters):
     if parameters is None:
         print("reference: none chosen, the scene is not known")
         return []
-    found = [file for file in sorted(REFERENCE_FOLDER.glob("*.csv")) if matches(read_table(file)[1], parameters)]
+    found = find_references(parameters)
     if not found:
         print("reference: no file in benchmarks/reference has this scene")
     for file in found:
@@ -149,12 +71,6 @@ def reference_label(file, notes):
         form = notes.get("bending form", "none")
         return "boundary integral, unbounded" + ("" if form == "none" else f", {form}")
     return file.resolve().parent.name if file.stem == "history" else file.stem
-
-
-def standard_columns(table):
-    """The columns of a history or reference file under one set of names."""
-    aliases = {"time": ("time", "t"), "D": ("D_xz", "D"), "theta": ("theta", "theta_over_pi")}
-    return {name: table[word] for name, words in aliases.items() for word in words if word in table}
 
 
 # -------------------------------------------------------------------------------------------------------------------- the plots
@@ -172,19 +88,15 @@ def title(parameters):
     if not parameters:
         return ""
     words = [parameters.get("Capsule/Shape", "capsule")]
-    for name, symbol in (("Scene/Shear number G", "$G$"), ("Scene/Reduced bending modulus", r"$\hat\kappa$"), ("Scene/Viscosity ratio", r"$\lambda$")):
-        if name in parameters and not (symbol == "$G$" and parameters.get("Scene/Flow") == "quiescent"):
+    if parameters.get("Scene/Flow", "shear") not in ("shear", "quiescent"):
+        words.append(parameters["Scene/Flow"])
+    number_of_flow = "Ca" if parameters.get("Scene/Scale modulus") == "shear" else "$G$"
+    for name, symbol in (("Scene/Shear number G", number_of_flow), ("Scene/Reduced bending modulus", r"$\hat\kappa$"), ("Scene/Viscosity ratio", r"$\lambda$")):
+        if name in parameters and not (symbol == number_of_flow and parameters.get("Scene/Flow") == "quiescent"):
             words.append(f"{symbol} = {parameters[name]}")
     if number(parameters.get("Scene/Reduced bending modulus", "0")) != 0:
         words.append(parameters.get("Capsule/Bending form", ""))
     return ", ".join(word for word in words if word)
-
-
-def without_jumps(theta):
-    """Angle/pi with a gap wherever it wraps from 1/2 to -1/2, so that no line is drawn across."""
-    theta = np.array(theta)
-    theta[1:][np.abs(np.diff(theta)) > 0.5] = math.nan
-    return theta
 
 
 def compare(run, reference, name):
@@ -196,8 +108,7 @@ def compare(run, reference, name):
             continue
         rows = [("last value", reference[key][-1], reference["time"][-1])]
         if end < reference["time"][-1]:
-            defined = ~np.isnan(reference[key])
-            rows.insert(0, ("at this time", np.interp(end, reference["time"][defined], reference[key][defined]), end))
+            rows.insert(0, ("at this time", interpolated(reference["time"], reference[key], end), end))
         print(f"  {symbol:8s} run {run[key][-1]:.6f} at t = {end:g}; largest difference over the run {largest_difference(run, reference, key):.1e}")
         for what, value, time in rows:
             difference = f"{100 * (run[key][-1] / value - 1):+.3f} %" if abs(value) > 1e-4 else f"{run[key][-1] - value:+.1e} (absolute)"
@@ -206,23 +117,29 @@ def compare(run, reference, name):
 
 def largest_difference(run, reference, key):
     """Largest |run - reference| at the run's times, where both are defined."""
-    defined = ~np.isnan(reference[key])
-    expected = np.interp(run["time"], reference["time"][defined], reference[key][defined], left=math.nan, right=math.nan)
-    difference = np.abs(run[key] - expected)
+    difference = np.abs(run[key] - interpolated(reference["time"], reference[key], run["time"]))
     return np.nanmax(difference) if np.isfinite(difference).any() else math.nan
 
 
-def plot_deformation(history, references, parameters, file):
-    run = standard_columns(history)
-    if "time" not in run or not ("D" in run or "theta" in run):
-        print("deformation.png: not drawn, history.csv has no columns time with D_xz or theta")
+def capsule_styles(n):
+    """(colour, label) of each capsule's curve; of many only the first and the last have a label."""
+    if n == 1:
+        return [(RUN, "this run")]
+    return [(plt.cm.viridis(0.9 * i / (n - 1)), f"capsule {i + 1}" if n <= 6 or i in (0, n - 1) else None) for i in range(n)]
+
+
+def plot_deformation(runs, references, parameters, file):
+    """D and theta of all capsules (standard columns) beside the references."""
+    keys = [key for key in ("D", "theta") if all(key in run for run in runs)]
+    if not keys:
+        print("deformation.png: not drawn, no columns D_xz or theta")
         return
-    keys = [key for key in ("D", "theta") if key in run]
     figure, axes = plt.subplots(len(keys), 1, figsize=(7, 3.2 * len(keys)), sharex=True, squeeze=False)
     labels = {"D": r"Taylor parameter  $D_{xz}$", "theta": r"inclination  $\theta/\pi$"}
     for axis, key in zip(axes[:, 0], keys):
         draw = without_jumps if key == "theta" else np.asarray
-        axis.plot(run["time"], draw(run[key]), color=RUN, label="this run", marker="o" if len(run["time"]) < 60 else "", markersize=3.5)
+        for run, (color, label) in zip(runs, capsule_styles(len(runs))):
+            axis.plot(run["time"], draw(run[key]), color=color, label=label, marker="o" if len(run["time"]) < 60 else "", markersize=3.5)
         for color, (name, reference) in zip(REFERENCES, references):
             if key in reference:
                 axis.plot(reference["time"], draw(reference[key]), "--", color=color, linewidth=1.4, label=name)
@@ -230,21 +147,55 @@ def plot_deformation(history, references, parameters, file):
         low, high = axis.get_ylim()
         if high - low < 0.02:  # do not blow rounding up to the height of the figure
             axis.set_ylim((low + high) / 2 - 0.01, (low + high) / 2 + 0.01)
-    end = run["time"][-1]
+    end = runs[0]["time"][-1]
     axes[-1, 0].set_xlim(-0.02 * end, 1.02 * end)
     axes[-1, 0].set_xlabel(time_label(parameters))
     axes[0, 0].set_title(title(parameters), fontsize=11, loc="left")
     axes[0, 0].legend(loc="best")
+    save(figure, file, f"{len(runs)} capsule(s), {len(runs[0]['time'])} rows to t = {end:g}, {len(references)} reference curve(s)")
+
+
+def plot_trajectory(runs, parameters, file):
+    """Where the centroids go: z over time and the paths in the plane of the flow. Not drawn when nothing moves."""
+    runs = [run for run in runs if all(key in run for key in ("x", "y", "z"))]
+    moved = max((np.ptp(run[key]) for run in runs for key in ("x", "y", "z")), default=0)
+    if moved < 0.05:
+        return
+    figure, axes = plt.subplots(1, 2, figsize=(10, 3.6))
+    for run, (color, label) in zip(runs, capsule_styles(len(runs))):
+        axes[0].plot(run["time"], run["z"], color=color, label=label)
+        axes[1].plot(run["x"], run["z"], color=color)
+        axes[1].plot(run["x"][0], run["z"][0], "o", color=color, markersize=4)
+    axes[0].set(xlabel=time_label(parameters), ylabel="$z/a$ of the centroid")
+    axes[1].set(xlabel="$x/a$ of the centroid (dot: at the start)", ylabel="$z/a$")
+    axes[0].set_title(title(parameters), fontsize=11, loc="left")
+    axes[0].legend(loc="best")
+    save(figure, file, f"{len(runs)} capsule(s), moved by up to {moved:.3g} a")
+
+
+def plot_suspension(table, parameters, file):
+    """What suspension.csv says of all capsules together, without what it does not have."""
+    groups = [("relative viscosity", {"": "relative_viscosity"}), ("normal stress differences", {"$N_1$": "N1", "$N_2$": "N2"}),
+              ("smallest gap $/a$", {"between capsules": "smallest_gap", "to a wall": "wall_gap"})]
+    shown = [(label, {name: table[column] for name, column in curves.items() if np.isfinite(table.get(column, math.nan)).any()}) for label, curves in groups]
+    shown = [(label, curves) for label, curves in shown if curves]
+    if "time" not in table or not shown:
+        print("suspension.png: not drawn, suspension.csv has none of its columns")
+        return
+    figure, axes = plt.subplots(1, len(shown), figsize=(4.2 * len(shown), 3.2), squeeze=False)
+    for axis, (label, curves) in zip(axes[0], shown):
+        for color, (name, values) in zip((RUN, SECOND), curves.items()):
+            axis.plot(table["time"], values, color=color, label=name or None)
+        axis.set(xlabel=time_label(parameters), ylabel=label)
+        if any(curves):
+            axis.legend(loc="best")
+    save(figure, file, ", ".join(label for label, _ in shown))
+
+
+def save(figure, file, contents):
     figure.savefig(file)
     plt.close(figure)
-    print(f"deformation.png: {len(run['time'])} rows to t = {end:g}, {len(references)} reference curve(s)")
-
-
-def contours_by_time(table):
-    """[(time, x, z)] of consecutive rows with one time, each polyline closed."""
-    starts = np.flatnonzero(np.diff(table["time"], prepend=math.nan) != 0)
-    parts = zip(np.split(table["time"], starts[1:]), np.split(table["x"], starts[1:]), np.split(table["z"], starts[1:]))
-    return [(time[0], np.append(x, x[0]), np.append(z, z[0])) for time, x, z in parts]
+    print(f"{file.name}: {contents}")
 
 
 def highlighted(contours, wanted=6):
@@ -262,32 +213,49 @@ def draw_flow(axis, reach):
                           arrowprops={"arrowstyle": "-|>", "color": "#999999", "linewidth": 1.2})
 
 
-def plot_contours(table, parameters, file):
-    if not all(name in table for name in ("time", "x", "z")):
-        print("contour.png: not drawn, contours.csv has no rows or no columns time, x, z")
-        return
-    contours = contours_by_time(table)
-    shown = highlighted(contours)
+def moved_back(capsules):
+    """The contours of all capsules, at each time less the x of their common middle where that travels far: and whether it does."""
+    middles = [np.mean([x[1:].mean() for _, x, _ in at_a_time]) for at_a_time in zip(*capsules)]
+    if np.ptp(middles) < 2:
+        return capsules, False
+    return [[(time, x - middle, z) for (time, x, z), middle in zip(contours, middles)] for contours in capsules], True
+
+
+def plot_contours(tables, parameters, file):
+    """Cuts of all capsules with the plane y = 0, some of them highlighted: those chosen for the first."""
+    capsules, travels = moved_back([contours_by_time(table) for table in tables])
+    shown = [index for index in highlighted(capsules[0]) if all(index < len(contours) for contours in capsules)]
     figure, axis = plt.subplots(figsize=(7.4, 5.6))
-    for index, (_, x, z) in enumerate(contours):
-        if index not in shown:
-            axis.plot(x, z, color="#dddddd", linewidth=0.6, zorder=1)
     symbol = time_label(parameters).split("  ")[1]
-    for rank, index in enumerate(shown):
-        time, x, z = contours[index]
-        first, last = rank == 0, rank == len(shown) - 1
-        style = {"color": "#222222", "linestyle": "--"} if first and not last else {"color": plt.cm.YlGnBu(0.35 + 0.6 * rank / max(1, len(shown) - 1))}
-        axis.plot(x, z, linewidth=2.6 if last else 1.4, label=f"{symbol} = {time:.4g}", zorder=4 if last else 3, **style)
-    extent = max(np.abs(table["x"]).max(), np.abs(table["z"]).max())
-    reach = 1.3 * extent
-    if (parameters or {}).get("Scene/Flow", "shear") != "quiescent":
-        draw_flow(axis, reach)
-    axis.set(aspect="equal", xlim=(-reach * 1.04, reach * 1.04), ylim=(-reach * 1.04, reach * 1.04), xlabel="$x/a$", ylabel="$z/a$")
+    for number_of_capsule, contours in enumerate(capsules):
+        for index, (_, x, z) in enumerate(contours):
+            if index not in shown:
+                axis.plot(x, z, color="#dddddd", linewidth=0.6, zorder=1)
+        for rank, index in enumerate(shown):
+            time, x, z = contours[index]
+            at_start, at_end = rank == 0, rank == len(shown) - 1
+            style = {"color": "#222222", "linestyle": "--"} if at_start and not at_end else {"color": plt.cm.YlGnBu(0.35 + 0.6 * rank / max(1, len(shown) - 1))}
+            label = f"{symbol} = {time:.4g}" if number_of_capsule == 0 else None
+            axis.plot(x, z, linewidth=2.6 if at_end else 1.4, label=label, zorder=4 if at_end else 3, **style)
+    if len(capsules) == 1 and not travels and abs(np.mean(tables[0]["z"])) < 0.5:
+        reach = 1.3 * max(np.abs(tables[0]["x"]).max(), np.abs(tables[0]["z"]).max())
+        if (parameters or {}).get("Scene/Flow", "shear") == "shear":
+            draw_flow(axis, reach)
+        axis.set(xlim=(-reach * 1.04, reach * 1.04), ylim=(-reach * 1.04, reach * 1.04))
+    axis.set(aspect="equal", xlabel="$x/a$" + (" from the middle" if travels else ""), ylabel="$z/a$")
     axis.set_title(title(parameters), fontsize=11, loc="left")
     axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
-    figure.savefig(file)
-    plt.close(figure)
-    print(f"contour.png: {len(contours)} contours, {len(shown)} highlighted")
+    save(figure, file, f"{len(tables)} capsule(s), {len(capsules[0])} contours, {len(shown)} highlighted")
+
+
+def of_all(histories):
+    """One table of all capsules: energies added, the largest volume error; steps and iterations are those of the run."""
+    rows = min(len(history["time"]) for history in histories)
+    common = {name: column[:rows] for name, column in histories[0].items()}
+    for name, together in (("membrane_energy", np.sum), ("bending_energy", np.sum), ("volume_error", lambda columns, axis: np.max(np.abs(columns), axis=axis))):
+        if all(name in history for history in histories):
+            common[name] = together([history[name][:rows] for history in histories], axis=0)
+    return common
 
 
 def panels(history, parameters):
@@ -323,7 +291,7 @@ def logarithmic_axis(axis, plain):
 
 
 def plot_convergence(history, parameters, file):
-    shown = panels(history, parameters) if "time" in history else []
+    shown = panels(history, parameters)
     if not shown:
         print("convergence.png: not drawn, history.csv has none of its columns")
         return
@@ -343,9 +311,7 @@ def plot_convergence(history, parameters, file):
         axis.set_xlabel(time_label(parameters))
         if any(curves):
             axis.legend(loc="best")
-    figure.savefig(file)
-    plt.close(figure)
-    print(f"convergence.png: {', '.join(name for name, *_ in shown)}")
+    save(figure, file, ", ".join(name for name, *_ in shown))
 
 
 def main():
@@ -359,22 +325,24 @@ def main():
         sys.exit(f"plot_run.py: not found: {', '.join(missing)}")
 
     parameters = load(folder, "used_parameters.prm", read_parameters)
-    history = load(folder, "history.csv", read_table)
-    contours = load(folder, "contours.csv", read_table)
-    if history:
-        files = arguments.reference or find_references(parameters)
-        tables = [(file, *read_table(file)) for file in files]
+    histories = load_capsules(folder, "history", ["time"])
+    contours = load_capsules(folder, "contours", ["time", "x", "z"])
+    if histories:
+        runs = [standard_columns(history) for history in histories]
+        tables = [(file, *read_table(file)) for file in arguments.reference or chosen_references(parameters)]
         references = [(reference_label(file, notes), standard_columns(table)) for file, table, notes in tables]
         usable = [(name, columns) for name, columns in references if "time" in columns]
         for name in sorted({name for name, _ in references} - {name for name, _ in usable}):
             print(f"reference: {name} has no column t or time, left out")
-        run = standard_columns(history[0])
-        for name, columns in usable if "time" in run else []:
-            compare(run, columns, name)
-        plot_deformation(history[0], usable, parameters, folder / "deformation.png")
-        plot_convergence(history[0], parameters, folder / "convergence.png")
+        for name, columns in usable:
+            compare(runs[0], columns, name)
+        plot_deformation(runs, usable, parameters, folder / "deformation.png")
+        plot_trajectory(runs, parameters, folder / "trajectory.png")
+        plot_convergence(of_all(histories), parameters, folder / "convergence.png")
     if contours:
-        plot_contours(contours[0], parameters, folder / "contour.png")
+        plot_contours(contours, parameters, folder / "contour.png")
+    if (folder / "suspension.csv").is_file():
+        plot_suspension(read_table(folder / "suspension.csv")[0], parameters, folder / "suspension.png")
 
 
 if __name__ == "__main__":

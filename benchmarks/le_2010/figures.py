@@ -8,12 +8,11 @@ import pathlib
 import matplotlib.pyplot as plt
 import numpy as np
 
-import runs  # noqa: F401  (puts plot_run on the path)
-import plot_run
 import snapshots
+from run_files import without_jumps
 
 COLORS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00"]
-LABELS = {"D_xz": r"$D_{xz}$", "theta": r"$\theta/\pi$", "theta_continuous": r"$\theta/\pi$, continuous", "delta": r"$\delta/\pi$", "area": r"area / initial area"}
+LABELS = {"D_xz": r"$D_{xz}$", "theta": r"$\theta/\pi$", "delta": r"$\delta/\pi$", "area": r"area / initial area"}
 GAMMA_T = r"$\dot\gamma t$"
 
 
@@ -24,7 +23,7 @@ def khat_label(result):
 def values(result, column):
     series = result.series[column]
     if column == "theta":
-        return plot_run.without_jumps(series)
+        return without_jumps(series)
     return series / series[0] if column == "area" else series
 
 
@@ -38,7 +37,7 @@ def draw_curves(axes, results, columns):
             axis.plot(result.series["time"], values(result, column), color=color, linewidth=1.6, label=khat_label(result))
             name = {"D_xz": "D"}.get(column, column)
             if reference and name in reference[0]:
-                draw = plot_run.without_jumps if column == "theta" else np.asarray
+                draw = without_jumps if column == "theta" else np.asarray
                 shown = reference[0]["time"] <= result.series["time"][-1] * 1.02 + 1
                 axis.plot(reference[0]["time"][shown], draw(reference[0][name])[shown], "--", color="#222222", linewidth=0.9, zorder=5)
     for axis, column in zip(axes, columns):
@@ -58,7 +57,8 @@ def time_series(groups, columns):
 
 
 def split_by_G(results):
-    return [(f"G = {G:g}", [result for result in results if result.G == G]) for G in sorted({result.G for result in results})]
+    """Groups that have something to draw."""
+    return [(f"G = {G:g}", [result for result in results if result.G == G]) for G in sorted({result.G for result in results if result.series})]
 
 
 def relaxation_style(name):
@@ -133,12 +133,12 @@ DRAWN = {
 
 
 def draw(name, results, folder):
-    """Whether there was anything to draw. A figure without runs is removed, so that none is left from other runs."""
+    """Whether there was anything to draw; else what is there stays."""
     file = pathlib.Path(folder) / f"{name}.png"
     wanted = results.of(name)
-    file.unlink(missing_ok=True)
     if not any(result.series for result in wanted):
-        print(f"{name}: nothing to draw ({', '.join(sorted({result.state() for result in wanted}))})")
+        if any(result.record for result in wanted):
+            print(f"{name}: nothing to draw ({', '.join(sorted({result.state() for result in wanted}))})")
         return False
     figure = DRAWN[name](wanted)
     if figure is None:

@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Part of Tanktread: the report doc/le_2010.md.
-"""write(file, results): what the runs show, figure by figure, and for each statement in the text of Le (2010)."""
+# Part of Tanktread: the report of the scenes of Le (2010).
+"""write(file, results, ...): what the runs show, figure by figure, and for each statement in the text of Le (2010)."""
 
 import math
-import pathlib
 
 import numpy as np
 
 import motion
+import report_parts
 import runs
 import statements
+from report_parts import difference, show, table
 
 TITLES = {
     "fig01": "Relaxation in a liquid at rest",
@@ -26,24 +27,6 @@ TITLES = {
     "fig12": "Biconcave capsule, G = 0.1, viscosity ratio 4: snapshots",
 }
 REFERENCE_TIMES = (0.25, 0.75)
-
-
-def show(value, digits=5):
-    return "–" if value is None or isinstance(value, float) and math.isnan(value) else f"{value:.{digits}g}"
-
-
-def difference(value, reference):
-    """"value (+0.12 %)", for small numbers "value (+0.0012)", or the value alone."""
-    if math.isnan(value) or math.isnan(reference):
-        return show(value)
-    if abs(reference) < 0.01:
-        return f"{value:.5f} ({value - reference:+.5f})"
-    return f"{value:.5g} ({100 * (value / reference - 1):+.2f} %)"
-
-
-def table(head, rows):
-    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
-    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows]) + "\n"
 
 
 def short(result):
@@ -125,13 +108,13 @@ NOTES = {"fig07": evenness}
 TABLES = {"fig01": relaxation_table, "fig02": None, "fig03": steady_table, "fig04": steady_table, "fig10": None, "fig12": None}
 
 
-def section(figure, results, folder):
+def heading(figure):
+    return f"## Fig. {int(figure[3:])}: {TITLES[figure]}\n"
+
+
+def section(figure, results, figures_folder):
     wanted = results.of(figure)
-    text = [f"## Fig. {int(figure[3:])}: {TITLES[figure]}\n"]
-    if (folder / f"figures/le_2010/{figure}.png").is_file():
-        text.append(f"![{TITLES[figure]}](figures/le_2010/{figure}.png)\n")
-    else:
-        text.append("Not drawn: no run has results.\n")
+    text = [heading(figure), f"![{TITLES[figure]}]({figures_folder}/{figure}.png)\n"]
     make = TABLES.get(figure, motion_table)
     if make:
         text.append(make(wanted))
@@ -148,7 +131,7 @@ INTRODUCTION = """# The scenes of Le (2010)
 D. V. Le, *Effect of bending stiffness on the deformation of liquid capsules enclosed by thin shells in shear flow*, Phys. Rev. E 82, 016318 (2010), computed with this code.
 This page is written by
 
-    benchmarks/le_2010/run.py [--quick | --full]
+    benchmarks/le_2010/run.py [--quick | --full] --update-doc
 
 from the results that it finds; the parameter files are in `benchmarks/le_2010`. Each run is shown at the finest resolution at which it was done: {resolutions}. In shear, bending has the form
 `moment-only`, the paper's. Dashed curves and the
@@ -162,13 +145,51 @@ rim, until the mesh there is degenerate; the run `ellipsoid_moment_only` shows h
 """
 
 
-def write(file, results):
-    folder = pathlib.Path(file).parent
+STATEMENTS_HEADING = "## What the paper says, and what these runs show\n"
+
+
+def former(file):
+    """What the report says so far: {heading: section} and {(figure, statement): what was seen}."""
+    sections = report_parts.former_sections(file)
+    rows = report_parts.rows_of(sections.get(STATEMENTS_HEADING, ""))
+    return sections, {(row[0], row[1]): row[2] for row in rows if len(row) == 3}
+
+
+def finer_runs(file, results, figure):
+    """Names of the runs of a figure that the file shows at a finer resolution than the results."""
+    sections, order = report_parts.former_sections(file), ["not run", *runs.RESOLUTIONS]
+    finer = []
+    for result in results.of(figure):
+        owner, name = result.name.split("/")
+        rows = report_parts.rows_of(sections.get(heading(owner), ""))
+        before = [cells[0][len(name) + 2:] for cells in rows if cells[0].startswith(f"{name}, ")]
+        now = result.resolution if result.state() == "done" else "not run"
+        finer += [name] if any(resolution in order and order.index(resolution) > order.index(now) for resolution in before) else []
+    return finer
+
+
+def figures_of(where):
+    """Figures that a statement is about: "9, 10", "9–12", "all"."""
+    if where == "all":
+        return runs.figure_names()
+    ranges = [[int(number) for number in part.split("–")] for part in where.split(", ")]
+    return [f"fig{number:02d}" for part in ranges for number in range(part[0], part[-1] + 1)]
+
+
+def write(file, results, figures, figures_folder, keep_others=False):
+    """The report of these figures, drawn in `figures_folder` as seen from the file. Sections of other figures, and what was seen of them, stay as they are in
+    the file or are left out."""
+    sections, seen_before = former(file) if keep_others else ({}, {})
     described = "; ".join(f"`{name}` has {runs.described(settings)}" for name, settings in runs.RESOLUTIONS.items())
     text = [INTRODUCTION.format(resolutions=described)]
-    text += [section(figure, results, folder) for figure in runs.figure_names()]
-    text.append("## What the paper says, and what these runs show\n")
-    text.append(table(["figure", "in the paper", "here"], [(where, said, seen(results)) for where, said, seen in statements.STATEMENTS]))
+    text += [section(figure, results, figures_folder) if figure in figures else sections.get(heading(figure), "") for figure in runs.figure_names()]
+    rows = []
+    for where, said, look in statements.STATEMENTS:
+        seen = look(results) if set(figures_of(where)) & set(figures) else "not computed"
+        if (where, said) in seen_before and (seen == "not computed" or not set(figures_of(where)) <= set(figures)):
+            seen = seen_before[where, said]
+        rows.append((where, said, seen))
+    text += [STATEMENTS_HEADING, table(["figure", "in the paper", "here"], rows)]
     file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_text("\n".join(text))
+    file.write_text("\n".join(part for part in text if part))
     print(f"report: {file}")

@@ -2,19 +2,18 @@
 # Part of Tanktread: the runs behind the figures of Le (2010), and what they have left in their folders.
 """Which runs a figure needs, where their results are, and their series, with those of the reference solutions."""
 
-import json
 import math
 import pathlib
 import sys
 
-import numpy as np
-
 HERE = pathlib.Path(__file__).resolve().parent
-ROOT = HERE.parents[1]
 sys.path.insert(0, str(HERE.parent))
-import plot_run  # noqa: E402
+import run_files  # noqa: E402
+import run_scenes  # noqa: E402
 
 import motion  # noqa: E402
+
+OUTPUT = run_scenes.ROOT / "output/le_2010"
 
 # From coarse to fine. The names are those of the parameter files, which hold physics and times; this says how fine, and in which box.
 RESOLUTIONS = {
@@ -33,52 +32,30 @@ def figure_names():
     return sorted(folder.name for folder in HERE.glob("fig*") if folder.is_dir())
 
 
-class Run:
-    """A parameter file: name is "fig05/G0.05_k0"."""
+def run_named(name):
+    """The run of a parameter file: name is "fig05/G0.05_k0"."""
+    return run_scenes.Run(HERE, OUTPUT, name)
 
-    def __init__(self, name):
-        self.name = name
-        self.prm = HERE / f"{name}.prm"
 
-    def folder(self, resolution):
-        return ROOT / "output/le_2010" / resolution / self.name
-
-    def key(self, settings):
-        """What decides the result; a run with another key has to be done again."""
-        return {"prm": self.prm.read_text(), "settings": settings}
-
-    def is_finished(self, resolution, settings):
-        file = self.folder(resolution) / "run.json"
-        if not file.is_file():
-            return False
-        record = json.loads(file.read_text())
-        return record["exit_code"] == 0 and record["input"] == self.key(settings)
-
-    def parameters(self):
-        return plot_run.read_parameters(self.prm)
-
-    def order(self):
-        """By G and bending modulus, then by name."""
-        parameters = self.parameters()
-        return [float(parameters.get(f"Scene/{name}", 0)) for name in ("Shear number G", "Reduced bending modulus")] + [self.name]
-
-    def end_time(self):
-        return float(self.parameters().get("Scene/End time", 10))
+def order(run):
+    """By G and bending modulus, then by name."""
+    parameters = run.parameters()
+    return [float(parameters.get(f"Scene/{name}", 0)) for name in ("Shear number G", "Reduced bending modulus")] + [run.name]
 
 
 def runs_of(figure):
     """The runs that a figure shows: its own parameter files, or those that its runs.txt names."""
     borrowed = HERE / figure / "runs.txt"
     if borrowed.is_file():
-        return [Run(line.strip()) for line in borrowed.read_text().splitlines() if line.strip() and not line.startswith("#")]
-    return sorted((Run(f"{figure}/{file.stem}") for file in (HERE / figure).glob("*.prm")), key=Run.order)
+        return [run_named(line.strip()) for line in borrowed.read_text().splitlines() if line.strip() and not line.startswith("#")]
+    return sorted((run_named(f"{figure}/{file.stem}") for file in (HERE / figure).glob("*.prm")), key=order)
 
 
 def find(names):
     """Runs for figures and single runs, each once; all for no names."""
     found = {}
     for name in names or figure_names():
-        for run in [Run(name)] if "/" in name else runs_of(name):
+        for run in [run_named(name)] if "/" in name else runs_of(name):
             found[run.name] = run
     return [found[name] for name in sorted(found)]
 
@@ -90,8 +67,7 @@ class Result:
         self.name, self.parameters = run.name, run.parameters()
         self.resolution, self.folder, self.record = None, None, None
         for resolution in RESOLUTIONS:  # from coarse to fine
-            record = run.folder(resolution) / "run.json"
-            found = json.loads(record.read_text()) if record.is_file() else None
+            found = run.record(resolution)
             if found and (self.record is None or found["exit_code"] == 0 or self.record["exit_code"] != 0):
                 self.resolution, self.folder, self.record = resolution, run.folder(resolution), found
         self.series, self.summary, self.contours = {}, {}, []
@@ -99,15 +75,15 @@ class Result:
             return
         history, summary, contours = (self.folder / f"{name}.csv" for name in ("history", "summary", "contours"))
         if history.is_file():
-            self.series, _ = plot_run.read_table(history)
+            self.series, _ = run_files.read_table(history)
         if summary.is_file():
             self.summary = dict(line.split(",", 1) for line in summary.read_text().splitlines()[1:])
         if contours.is_file():
-            table, _ = plot_run.read_table(contours)
-            self.contours = plot_run.contours_by_time(table) if table else []
+            table, _ = run_files.read_table(contours)
+            self.contours = run_files.contours_by_time(table) if table else []
 
     def number(self, quantity):
-        return plot_run.number(self.summary.get(quantity, "nan"))
+        return run_files.number(self.summary.get(quantity, "nan"))
 
     @property
     def G(self):
@@ -128,29 +104,18 @@ class Result:
 
     def reference(self):
         """(series, motion) of the reference solution for this scene, or None."""
-        for file in sorted(plot_run.REFERENCE_FOLDER.glob("*.csv")):
-            table, notes = plot_run.read_table(file)
-            if plot_run.matches(notes, self.parameters):
-                series = plot_run.standard_columns(table)
-                series.update({name: table[name] for name in ("L", "B", "W") if name in table})
-                if "alpha_over_pi" not in table:
-                    return series, None
-                series["delta"] = motion.phase_angle(series["theta"], table["alpha_over_pi"])
-                return series, motion.summary(series["time"], series["D"], series["theta"], table["alpha_over_pi"])
+        for file in run_files.find_references(self.parameters):
+            table, _ = run_files.read_table(file)
+            series = run_files.standard_columns(table)
+            if "alpha_over_pi" not in table:
+                return series, None
+            series["delta"] = motion.phase_angle(series["theta"], table["alpha_over_pi"])
+            return series, motion.summary(series["time"], series["D"], series["theta"], table["alpha_over_pi"])
         return None
 
     def at(self, time, quantity):
         """Value at a time by a cubic through the four nearest rows."""
-        return interpolated(self.series["time"], self.series[quantity], time) if quantity in self.series else math.nan
-
-
-def interpolated(times, values, time):
-    if not len(times) or time > times[-1] * (1 + 1e-9):
-        return math.nan
-    nearest = np.sort(np.argsort(np.abs(times - time))[:4])
-    t, v = times[nearest], values[nearest]
-    weights = [np.prod([(time - b) / (a - b) for b in t if b != a]) for a in t]
-    return float(np.dot(weights, v))
+        return run_files.interpolated(self.series["time"], self.series[quantity], time) if quantity in self.series else math.nan
 
 
 class Results:
@@ -161,3 +126,8 @@ class Results:
 
     def of(self, figure):
         return [self.runs[run.name] for run in runs_of(figure)]
+
+    def are_complete(self, figure):
+        """Whether all runs of a figure have been tried, and one has left something."""
+        found = self.of(figure)
+        return all(result.record for result in found) and any(result.series for result in found)

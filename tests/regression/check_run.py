@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Part of Tanktread: runs a parameter file and checks how it ends.
-"""The last row of history.csv is compared with values from an independent solution (--expect D_xz=0.38,0.05: within 5 %), the volume error of every row with --volume-error; or
-the run has to fail with a given exit code and message (--exit-code 2 --message TEXT) and leave its last good state."""
+"""The last row of history.csv is compared with values from an independent solution (--expect D_xz=0.38,0.05: within 5 %), the volume error of every row with
+--volume-error; or the run has to fail with a given exit code and message (--exit-code 2 --message TEXT) and leave its last good state."""
 
 import argparse
 import csv
+import math
 import pathlib
 import subprocess
 import sys
@@ -39,21 +40,27 @@ def run(args):
     return result.returncode, result.stdout
 
 
+def largest_of(values):
+    """The largest, or NaN if one is NaN: max() passes over those that are not first."""
+    values = list(values)
+    return math.nan if any(map(math.isnan, values)) else max(values)
+
+
 def failures_of_history(args):
     with open(pathlib.Path(args.output) / "history.csv", newline="") as file:
         rows = [{name: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
-    largest = max(abs(row["volume_error"]) for row in rows)
+    largest = largest_of(abs(row["volume_error"]) for row in rows)
     print(f"volume error of {len(rows)} rows: at most {largest:.1e}")
     if not largest <= args.volume_error:
         yield f"volume error {largest}, allowed {args.volume_error}"
-    if args.time is not None and rows[-1]["time"] < args.time * (1 - 1e-9):
+    if args.time is not None and not rows[-1]["time"] >= args.time * (1 - 1e-9):
         yield f"ended at time {rows[-1]['time']}, expected {args.time}"
     for column in args.varies:
-        if len({row[column] for row in rows}) == 1:
-            yield f"{column} is {rows[0][column]} in all rows"
+        if not largest_of(row[column] for row in rows) > min(row[column] for row in rows):
+            yield f"{column} is {rows[0][column]} in all rows, or not a number in some"
     for kept in args.keeps:
         column, _, allowed = kept.partition("=")
-        change = max(abs(row[column] / rows[0][column] - 1) for row in rows)
+        change = largest_of(abs(row[column] / rows[0][column] - 1) for row in rows)
         print(f"{column}: changes by at most {change:.1e}")
         if not change <= float(allowed):
             yield f"{column} changes by {change}, allowed {allowed}"

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Part of Tanktread: a run gives the same history.csv on any number of ranks.
-"""Runs a parameter file once for each number of ranks and compares all columns of history.csv, but iterations and times, with those of the first run. What the solvers' tolerances leave open
-differs between numbers of ranks: they have to be tight."""
+"""Runs a parameter file once for each number of ranks and compares all columns of history.csv, but iterations and times, with those of the first run. What
+the solvers' tolerances leave open differs between numbers of ranks: they have to be tight."""
 
 import argparse
 import csv
@@ -38,7 +38,10 @@ def compared_file(args, ranks):
 def main():
     args = arguments()
     pathlib.Path(args.output).mkdir(parents=True, exist_ok=True)
-    first, *others = (compared_file(args, int(n)) for n in args.ranks.split(","))
+    ranks = [int(n) for n in args.ranks.split(",")]
+    if len(ranks) < 2:
+        sys.exit(f"--ranks {args.ranks}: nothing to compare with")
+    first, *others = (compared_file(args, n) for n in ranks)
     failed = 0
     for other in others:
         print(f"{first} and {other}:", flush=True)

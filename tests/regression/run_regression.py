@@ -9,12 +9,14 @@ A reference is written, or renewed after a change that is meant, with --update.
 
 import argparse
 import csv
+import math
 import os
 import pathlib
 import subprocess
 import sys
 
 NEVER = ("newton_iterations", "linear_iterations", "wall_time")
+ANGLES = ("theta", "theta_continuous", "alpha", "delta")  # of a section that is nearly round: not a number
 COLUMNS = "time,D_xz,theta,L,B,W,volume,area,membrane_energy,bending_energy"
 
 
@@ -51,6 +53,9 @@ def select_columns(history, names, target):
     if missing:
         sys.exit(f"{history}: no rows, or no column {', '.join(missing)}")
     for row in rows:
+        wrong = [name for name in names if math.isnan(float(row[name])) and not (name in ANGLES and float(row.get("D_xz", 1)) < 1e-3)]
+        if wrong:
+            sys.exit(f"{history}: at time {row.get('time')} not a number: {', '.join(wrong)}")  # two runs that are equally wrong would agree
         if "theta" in row and abs(float(row.get("D_xz", 1))) < 1e-8:
             row["theta"] = "nan"  # a round section has no direction
     with open(target, "w", newline="") as file:

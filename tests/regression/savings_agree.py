@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Part of Tanktread: what a scene leaves out changes nothing.
-"""Runs a parameter file, and once more for each --almost: a parameter next to the value at which the program leaves some physics out, so that it is computed after all. All columns of history.csv,
-but iterations, times and those of --without, have to be the same within the tolerance."""
+"""Runs a parameter file, and once more for each --almost: a parameter next to the value at which the program leaves some physics out, so that it is computed
+after all. All columns of history.csv, but iterations, times and those of --without, have to be the same within the tolerance."""
 
 import argparse
 import csv

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Part of Tanktread: the order of a time scheme, seen in whole runs.
-"""Runs a parameter file with steps dt, dt/2 and dt/4 on one fluid mesh and takes the order from the differences of the results at the end: log2(|q(dt) - q(dt/2)| / |q(dt/2) - q(dt/4)|)
-for semi-axes and inclination together. Passes when it lies in the range given. The mesh must not change: a run with another number of cells fails."""
+"""Runs a parameter file with steps dt, dt/2 and dt/4 on one fluid mesh and takes the order from the differences of the results at the end: log2(|q(dt) -
+q(dt/2)| / |q(dt/2) - q(dt/4)|) for semi-axes and inclination together. Passes when it lies in the range given. The mesh must not change: a run with another
+number of cells fails."""
 
 import argparse
 import csv

@@ -1,0 +1,82 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Part of Tanktread: stands in for the program where scripts are tested.
+"""Takes the program's command line, FILE.prm --set Section/Parameter=value ..., and leaves a folder like one of its own.
+
+The scenes of benchmarks/flows get their reference solution, read off at other times, in the frame of the box, with D larger by the factor 1 + (4/side)^3;
+the rest a capsule whose D goes to 0.3.
+"""
+
+import math
+import pathlib
+import sys
+
+COLUMNS = ("time D_xz theta L B W volume volume_error area membrane_energy bending_energy dissipation newton_iterations linear_iterations wall_time "
+           "alpha delta pressure_jump step cells theta_continuous S_xx S_yy S_zz S_xy S_xz S_yz intrinsic_viscosity N1 N2 x y z u_x u_y u_z").split()
+SUSPENSION_COLUMNS = "time relative_viscosity N1 N2 smallest_gap wall_gap volume_fraction".split()
+REFERENCES = {"crossing_pair": "crossing_pair_Ca0.45", "planar_extension": "planar_extension_Ca0.1", "uniaxial_extension": "uniaxial_extension_Ca0.1",
+              "parabola": "plane_poiseuille_Ca1_H5_z1.5", "wall": "wall_Ca0.3_d2"}
+
+
+def write(file, names, rows):
+    lines = [",".join(f"{row.get(name, 0):.9g}" for name in names) for row in rows]
+    file.write_text("\n".join([",".join(names), *lines]) + "\n")
+
+
+def simple():
+    """Rows of a capsule in shear."""
+    for step in range(41):
+        t = 0.25 * step
+        D = 0.3 * (1 - math.exp(-t))
+        yield {"time": t, "D_xz": D, "theta": 0.25 - 0.1 * D, "L": 1 + D, "B": 1 - D, "W": 1, "volume": 4.18, "area": 12.5 + D, "step": 0.25, "alpha": 0.1 * t,
+               "delta": 0.1 * t, "intrinsic_viscosity": 2.5}
+
+
+def from_reference(file, side, end):
+    """Rows at times that are not those of the file."""
+    sys.path.insert(0, str(file.parents[1]))
+    import numpy as np
+    import run_files
+    table, _ = run_files.read_table(file)
+    times = np.array([0, *np.arange(0.03, end, 0.0997), end])
+    row = {name: run_files.interpolated(table["t"], column, times) for name, column in table.items()}
+    row.update(time=times, D_xz=row["D"] * (1 + (4 / side) ** 3), theta=row.get("theta_over_pi", 0 * times))
+    if "wall" in file.name:
+        row.update(x=row["x"] - side / 2 * times, z=row["z"] + 2 - side / 2, u_x=row["u_x"] - side / 2)
+    return [{name: column[i] for name, column in row.items()} for i in range(len(times))]
+
+
+def circles(rows):
+    """Cuts of a sphere at the first and the last row."""
+    for row in (rows[0], rows[-1]):
+        for k in range(24):
+            yield {"time": row["time"], "x": row.get("x", 0) + math.cos(k * math.pi / 12), "z": row.get("z", 0) + math.sin(k * math.pi / 12)}
+
+
+def main():
+    settings = dict(word.split("=", 1) for word in sys.argv[2:] if word != "--set")
+    prm, folder = pathlib.Path(sys.argv[1]), pathlib.Path(settings["Output/Directory"])
+    folder.mkdir(parents=True, exist_ok=True)
+    if prm.stem in REFERENCES:
+        file = prm.parents[1] / f"reference/{REFERENCES[prm.stem]}_prestress0.05.csv"
+        end = next(float(line.split("=")[1]) for line in prm.read_text().splitlines() if "End time" in line)
+        rows = from_reference(file, float(settings["Scene/Box side"].split(",")[-1]), end)
+    else:
+        rows = list(simple())
+    if prm.stem == "crossing_pair":
+        second = [{**row, **{name: -row.get(name, 0) for name in ("x", "y", "z", "u_x", "u_y", "u_z")}} for row in rows]
+        for i, capsule in enumerate((rows, second)):
+            write(folder / f"history_{i + 1}.csv", COLUMNS, capsule)
+            write(folder / f"contours_{i + 1}.csv", ["time", "x", "z"], circles(capsule))
+        write(folder / "suspension.csv", SUSPENSION_COLUMNS, [{**row, "smallest_gap": row["gap"], "relative_viscosity": 1.1} for row in rows])
+    else:
+        write(folder / "history.csv", COLUMNS, rows)
+        write(folder / "contours.csv", ["time", "x", "z"], circles(rows))
+    (folder / "summary.csv").write_text("quantity,value\noutcome,end time\nmode,steady\nfrom,0\n")
+    (folder / "used_parameters.prm").write_text(prm.read_text())
+    for i, row in enumerate(rows):
+        print(i, f"{row['time']:g}", 0.1, 2, 10, f"{row['D_xz']:g}", 0.2, 0, 1)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,223 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Part of Tanktread: tests of the scripts of benchmarks/, in a copy of the repository and with a stand-in for the program.
+"""What a user's call changes and what it leaves, what is said where Python lacks a package, and the figures of runs."""
+
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+sys.path.insert(0, str(ROOT / "benchmarks"))
+import python_packages  # noqa: E402
+
+python_packages.need("numpy", "matplotlib")
+
+import numpy as np  # noqa: E402
+
+import run_files  # noqa: E402
+import run_scenes  # noqa: E402
+
+SCRIPTS = ["plot_run.py", "interface_study.py", "le_2010/run.py", "flows/run.py"]
+
+
+class Repository(unittest.TestCase):
+    """A copy of benchmarks/ and doc/."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = pathlib.Path(folder.name)
+        for name in ("benchmarks", "doc"):
+            shutil.copytree(ROOT / name, self.root / name, ignore=shutil.ignore_patterns("__pycache__"))
+        self.program = self.root / "program"
+        self.program.write_text(f'#!/bin/sh\nexec "{sys.executable}" "{HERE / "fake_program.py"}" "$@"\n')
+        self.program.chmod(0o755)
+
+    def call(self, script, *words, python=(), **environment):
+        command = [*python, self.root / "benchmarks" / script, *words]
+        result = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env={**os.environ, **environment}, cwd=self.root)
+        return result.returncode, result.stdout
+
+    def passes(self, script, *words, python=(sys.executable,)):
+        code, said = self.call(script, *words, python=python)
+        self.assertEqual(code, 0, said)
+        return said
+
+    def doc(self):
+        return {str(file.relative_to(self.root)): file.read_bytes() for file in (self.root / "doc").rglob("*") if file.is_file()}
+
+
+class Le2010(Repository):
+    def run_scenes(self, *words, **options):
+        return self.passes("le_2010/run.py", *words, "--program", str(self.program), "--ranks", "1", **options)
+
+    def test_results_go_to_output_and_doc_stays(self):
+        before = self.doc()
+        self.run_scenes("fig04", python=())  # by its run bit
+        self.assertEqual(self.doc(), before)
+        output = self.root / "output/le_2010"
+        report = (output / "report.md").read_text()
+        self.assertIn("## Fig. 4", report)
+        self.assertNotIn("## Fig. 5", report)
+        self.assertIn("D falls", report.replace("does not always fall", "D falls"))
+        self.assertEqual([file.name for file in (output / "figures").iterdir()], ["fig04.png"])
+        self.assertTrue((output / "quick/fig04/G0.05_k0/run.json").is_file())
+
+    def test_doc_changes_where_it_was_asked_to(self):
+        before = self.doc()
+        said = self.run_scenes("fig04", "fig06/G0.005_k0", "--quick", "--update-doc")
+        self.assertIn("fig04: stays as it is in doc/, which has G0.05_k0, G0.05_k0.01 at a finer resolution", said)
+        self.assertEqual(self.doc(), before)
+        said = self.run_scenes("fig04", "fig06/G0.005_k0", "--full", "--update-doc")
+        self.assertIn("fig06: stays as it is in doc/, not all of its runs are there", said)
+        after = self.doc()
+        changed = {name for name in {*before, *after} if before.get(name) != after.get(name)}
+        self.assertEqual(changed, {"doc/le_2010.md", "doc/figures/le_2010/fig04.png"})
+        old, new = (set(doc["doc/le_2010.md"].decode().splitlines()) for doc in (before, after))
+        self.assertTrue(any("| G0.05_k0.0375, full | steady | 10 | 0.29999" in line for line in new - old))
+        others = [line for line in old - new if not line.startswith(("| G0.05_k", "| 4 |"))]
+        self.assertEqual(others, [], "lines of other figures")
+
+    def test_resume_and_draw_compute_nothing(self):
+        self.run_scenes("fig04")
+        record = self.root / "output/le_2010/quick/fig04/G0.05_k0/run.json"
+        before = record.stat().st_mtime_ns
+        self.assertIn("finished before: 4 of 4", self.run_scenes("fig04", "--resume"))
+        self.run_scenes("--draw")
+        self.assertEqual(record.stat().st_mtime_ns, before)
+
+    def test_a_part_of_a_figure_is_drawn(self):
+        self.assertNotIn("No artists", self.run_scenes("fig03/G0.05_k0"))
+        self.assertTrue((self.root / "output/le_2010/figures/fig03.png").is_file())
+
+    def test_a_run_that_fails_is_reported_and_does_not_stop_the_others(self):
+        self.program.write_text(self.program.read_text().replace("exec", 'case "$1" in *k0.01.prm) echo "tanktread: FAILED here"; exit 2;; esac\nexec'))
+        self.run_scenes("fig04")
+        report = (self.root / "output/le_2010/report.md").read_text()
+        self.assertIn("| G0.05_k0.01 | failed: tanktread: FAILED here |", report)
+        self.assertIn("G0.05_k0.025, quick", report)
+
+
+class Flows(Repository):
+    """The stand-in's D is larger by (4/side)^3, everything else is the reference's."""
+
+    def run_scenes(self, *words):
+        return self.passes("flows/run.py", *words, "--program", str(self.program), "--ranks", "1")
+
+    def rows(self, report, scene):
+        """{first cell: others} of all tables of a scene."""
+        text = report.read_text().split(f"## {scene}\n")[1].split("\n## ")[0]
+        rows = [line.strip("| ").split(" | ") for line in text.splitlines() if line.startswith("| ") and not line.startswith("|  |")]
+        return {cells[0]: cells[1:] for cells in rows}
+
+    def test_comparison_with_the_references(self):
+        before = self.doc()
+        for resolution in ("--quick", "--wide"):
+            self.run_scenes(resolution)
+        self.assertEqual(self.doc(), before)
+        report = self.root / "output/flows/report.md"
+        same, nearer = "(+0.00 %)", "(+0.10 %)"
+        ends = {"Planar extension": "D at 8", "Above a wall": "D at 30", "Plane Poiseuille flow": "D at 30", "A pair passing in shear": "D at 32"}
+        for scene, at in ends.items():
+            reference, quick, wide = self.rows(report, scene)[at]
+            self.assertIn("(+0.80 %)", quick, scene)
+            self.assertIn(nearer, wide, scene)
+        wall = self.rows(report, "Above a wall")
+        self.assertEqual(wall["z − z₀ at 30"], ["0.69491", f"0.69491 {same}", f"0.69491 {same}"])
+        self.assertEqual(wall["u_x at 10"], ["2.2056", f"2.2056 {same}", f"2.2056 {same}"])
+        self.assertEqual(self.rows(report, "Plane Poiseuille flow")["z − z₀ at 10"], ["-0.037475", f"-0.037475 {same}", f"-0.037475 {same}"])
+        self.assertEqual(self.rows(report, "A pair passing in shear")["largest offset"][:3], ["0.720", "0.72513", f"0.72513 {same}"])
+        self.assertEqual(self.rows(report, "A pair passing in shear")["smallest gap"][:3], ["–", "0.34215", f"0.34215 {same}"])
+        self.assertEqual(len(list((self.root / "output/flows/figures").glob("*.png"))), 5)
+
+    def test_doc_changes_where_it_was_asked_to(self):
+        self.run_scenes("wall", "--wide", "--update-doc")
+        text = (self.root / "doc/flows.md").read_text()
+        self.assertIn("## Above a wall", text)
+        self.assertNotIn("## Planar extension", text)
+        shutil.rmtree(self.root / "output")
+        said = self.run_scenes("wall", "planar_extension", "--quick", "--update-doc")
+        self.assertIn("wall: stays as it is in doc/, which has it at wide", said)
+        report = self.root / "doc/flows.md"
+        self.assertIn("## Planar extension", report.read_text())
+        self.assertEqual(report.read_text().split("## Above a wall")[1], text.split("## Above a wall")[1])
+
+    def test_what_is_left_of_a_failed_run_is_reported(self):
+        self.program.write_text(self.program.read_text().replace("exec", 'echo "tanktread: FAILED early"; exit 2\nexec'))
+        self.assertIn("wall: exit code 2: tanktread: FAILED early", self.run_scenes("wall"))
+        self.assertIn("No results: quick: tanktread: FAILED early.", (self.root / "output/flows/report.md").read_text())
+
+    def test_plots_of_several_capsules(self):
+        self.run_scenes("crossing_pair")
+        folder = self.root / "output/flows/quick/crossing_pair"
+        said = self.passes("plot_run.py", folder)
+        self.assertEqual({file.stem for file in folder.glob("*.png")}, {"deformation", "trajectory", "convergence", "contour", "suspension"})
+        self.assertIn("difference +0.800 %", said)
+        self.assertIn("deformation.png: 2 capsule(s)", said)
+        self.assertIn("contour.png: 2 capsule(s)", said)
+
+
+class Packages(Repository):
+    def test_another_python_is_found(self):
+        code, said = self.call("le_2010/run.py", "--help", python=(sys.executable, "-S"))  # without the installed packages
+        self.assertEqual(code, 0, said)
+        self.assertIn("--update-doc", said)
+
+    def test_one_line_where_there_is_none(self):
+        folder = self.root / "without"  # comes before the installed packages of every Python
+        folder.mkdir()
+        for package in ("numpy", "matplotlib"):
+            (folder / f"{package}.py").write_text("raise ImportError")
+        for script in SCRIPTS:
+            code, said = self.call(script, python=(sys.executable,), PYTHONPATH=str(folder))
+            self.assertEqual(code, 1, said)
+            self.assertEqual(len(said.splitlines()), 1, said)
+            self.assertIn(f"{pathlib.Path(script).name}: ", said)
+            self.assertIn("install python3-numpy python3-matplotlib (Debian)", said)
+
+
+class Cores(unittest.TestCase):
+    def test_all_are_used(self):
+        division = run_scenes.division_of_cores
+        self.assertEqual(division(40, 2), (2, 1))
+        self.assertEqual(division(1, 2), (1, 2))
+        self.assertEqual(division(3, 16), (4, 4))
+        self.assertEqual(division(8, 16), (8, 2))
+        self.assertEqual(division(40, 8, ranks=2), (4, 2))
+        self.assertEqual(division(40, 8, jobs=1), (1, 4))
+        self.assertEqual(division(0, 1), (1, 1))
+
+
+class Files(unittest.TestCase):
+    def test_cubics_are_met(self):
+        times = np.array([0, 0.1, 0.3, 0.4, 0.8, 1.0, 1.1])
+        cubic = lambda t: 1 - 2 * t + 3 * t**2 - 4 * t**3  # noqa: E731
+        wanted = np.linspace(0, 1.1, 23)
+        np.testing.assert_allclose(run_files.interpolated(times, cubic(times), wanted), cubic(wanted), rtol=0, atol=1e-13)
+        values = cubic(times)
+        values[0] = np.nan
+        self.assertTrue(np.isnan(run_files.interpolated(times, values, 0.05)))
+        self.assertAlmostEqual(run_files.interpolated(times, values, 0.2), cubic(0.2), places=12)
+        self.assertTrue(np.isnan(run_files.interpolated(times, values, 1.2)))
+
+    def test_references_are_those_of_the_scene(self):
+        pair = {"Scene/Shear number G": "0.45", "Scene/Scale modulus": "shear", "Capsule/Prestress": "0.05", "Capsule/Centres": "-4, 0, 0.25; 4, 0, -0.25",
+                "Scene/Reduced bending modulus": "0"}
+        names = lambda parameters: [file.name for file in run_files.find_references(parameters)]  # noqa: E731
+        self.assertEqual(names(pair), ["crossing_pair_Ca0.45_prestress0.05.csv"])
+        for name, value in (("Capsule/Centres", "0, 0, 0"), ("Capsule/Prestress", "0"), ("Scene/Scale modulus", "Young"), ("Scene/Reynolds number", "1")):
+            self.assertEqual(names({**pair, name: value}), [], name)
+        single = {"Scene/Shear number G": "0.2", "Scene/Reduced bending modulus": "0.04"}
+        self.assertEqual(names(single), ["sphere_G0.2_k0.04_variational.csv"])
+        for name, value in (("Capsule/Centres", "0, 0, 1"), ("Scene/Scale modulus", "shear"), ("Scene/Flow", "quiescent"), ("Capsule/Thickness", "0.1")):
+            self.assertEqual(names({**single, name: value}), [], name)
+
+
+if __name__ == "__main__":
+    unittest.main()
