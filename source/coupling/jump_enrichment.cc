@@ -268,8 +268,8 @@ namespace tanktread
       {
         dealii::Point<3> centre;
         for (unsigned int d = 0; d < 3; ++d)
-          centre[d] = -0.5 * mesh.side() + h * (position[d] + 0.5);
-        if (std::abs(centre[2]) > 0.5 * mesh.side())
+          centre[d] = mesh.box().lower(d) + h * (position[d] + 0.5);
+        if (!mesh.box().contains(centre))
           continue;
         const int cell = locator_.locate(centre).cell;
         if (cell < 0 || space_.velocity->cell_sizes()[cell] > 1.5 * h)
@@ -629,7 +629,7 @@ namespace tanktread
     const double excess =
       dealii::Utilities::MPI::sum(std::accumulate(pressure_values_.begin(), pressure_values_.begin() + p_space.n_owned(), 0.), space_.mesh.communicator());
     for (unsigned int i = 0; i < p_space.n_owned(); ++i)
-      pressure_values_[i] -= excess / std::pow(space_.mesh.side(), 3) * pressure_integrals_[i];
+      pressure_values_[i] -= excess / space_.mesh.box().volume() * pressure_integrals_[i];
     p_space.store(pressure_values_.data(), load.block(pressure_block), true);
   }
 
@@ -695,7 +695,7 @@ namespace tanktread
     const NodeSpace &space = *space_.pressure;
     space.load(fields.block(pressure_block), pressure_values_.data());
     double mean = std::inner_product(pressure_integrals_.begin(), pressure_integrals_.end(), pressure_values_.begin(), 0.);
-    mean        = dealii::Utilities::MPI::sum(mean, space_.mesh.communicator()) / std::pow(space_.mesh.side(), 3);
+    mean        = dealii::Utilities::MPI::sum(mean, space_.mesh.communicator()) / space_.mesh.box().volume();
     for (unsigned int i = 0; i < space.n_owned(); ++i)
       pressure_values_[i] -= mean;
     space.update(pressure_values_.data());

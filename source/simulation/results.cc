@@ -166,12 +166,13 @@ namespace tanktread
     std::ostringstream number;
     number << std::setw(4) << std::setfill('0') << n_fields_;
     const Interior interior(shell.surface, state.x);
-    const double   side              = fluid.mesh().side();
+    const Box     &box               = fluid.mesh().box();
     const auto     interior_pressure = [&](const dealii::Point<3> &point) {
       // The periodic image of the point that is nearest to the capsule.
       Eigen::Vector3d y(point[0], point[1], point[2]);
-      for (unsigned int d = 0; d < 2; ++d)
-        y[d] -= side * std::round((y[d] - interior.centre()[d]) / side);
+      for (unsigned int d = 0; d < 3; ++d)
+        if (box.is_periodic(d))
+          y[d] -= box.side[d] * std::round((y[d] - interior.centre()[d]) / box.side[d]);
       return interior.contains(y) ? state.pressure_jump : 0.;
     };
     const std::string fluid_file = write_fluid_fields(folder_, "fluid", n_fields_, fluid.space(), state.fluid, shear_rate, interior_pressure);
