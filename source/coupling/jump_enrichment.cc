@@ -101,8 +101,8 @@ namespace tanktread
       {
         dealii::Point<3> centre;
         for (unsigned int d = 0; d < 3; ++d)
-          centre[d] = -0.5 * mesh.side() + h * (position[d] + 0.5);
-        if (std::abs(centre[2]) > 0.5 * mesh.side())
+          centre[d] = mesh.box().lower(d) + h * (position[d] + 0.5);
+        if (!mesh.box().contains(centre))
           continue;
         const int cell = locator_.locate(centre).cell;
         if (cell < 0)

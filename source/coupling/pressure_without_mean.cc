@@ -7,14 +7,13 @@
 #include <tanktread/fluid/stokes_operator.h>
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 namespace tanktread
 {
   PressureWithoutMean::PressureWithoutMean(const TaylorHoodSpace &space)
     : space_(space)
-    , volume_(std::pow(space.mesh.side(), 3))
+    , volume_(space.mesh.box().volume())
   {
     const NodeSpace              &p = *space.pressure;
     dealii::AlignedVector<double> ones(p.full_size()), integrals(p.full_size());

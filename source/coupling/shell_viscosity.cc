@@ -92,12 +92,13 @@ namespace tanktread
     const Sides         sides(distance);
     CutCells            cut;
     const LatticeBlock &block = distance.block();
-    const int           n     = space_.mesh.n_rung_0() << space_.mesh.finest_level();
+    const Lattice       n     = space_.mesh.n_cubes(space_.mesh.finest_level());
     const NodeSpace    &nodes = *space_.velocity;
     // The image of a cell that may lie in the block.
     const auto image = [&](Lattice cell) {
-      for (unsigned int d = 0; d < 2; ++d)
-        cell[d] = block.low[d] + ((cell[d] - block.low[d]) % n + n) % n;
+      for (unsigned int d = 0; d < 3; ++d)
+        if (space_.mesh.box().is_periodic(d))
+          cell[d] = block.low[d] + ((cell[d] - block.low[d]) % n[d] + n[d]) % n[d];
       return cell;
     };
     std::vector<double> phi(nodes.n_local(), std::nan("")), mu(27 * cells_.size(), 1.);

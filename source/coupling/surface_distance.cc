@@ -12,7 +12,7 @@ namespace tanktread
 {
   SurfaceDistance::SurfaceDistance(const FluidMesh &mesh, std::vector<QuadraticPatch> patches)
     : h_(mesh.cell_size(mesh.finest_level()))
-    , corner_(-0.5 * mesh.side())
+    , corner_(mesh.box().lower(0), mesh.box().lower(1), mesh.box().lower(2))
     , patches_(std::move(patches))
   {
     std::vector<Lattice> cells(patches_.size());
@@ -22,7 +22,7 @@ namespace tanktread
     for (std::size_t q = 0; q < patches_.size(); ++q)
       for (unsigned int d = 0; d < 3; ++d)
         {
-          cells[q][d]   = static_cast<int>(std::floor((patches_[q].X[d] - corner_) / h_));
+          cells[q][d]   = static_cast<int>(std::floor((patches_[q].X[d] - corner_[d]) / h_));
           block_.low[d] = std::min(block_.low[d], cells[q][d] - 2);
           high[d]       = std::max(high[d], cells[q][d] + 2);
         }
@@ -77,7 +77,7 @@ namespace tanktread
         first[d]        = std::max(lower - (node[d] % 2 == 0 ? 2 : 1), block_.low[d]);
         last[d]         = std::min(lower + 1, block_.low[d] + block_.size[d] - 1);
       }
-    const Eigen::Vector3d y(corner_ + 0.5 * h_ * node[0], corner_ + 0.5 * h_ * node[1], corner_ + 0.5 * h_ * node[2]);
+    const Eigen::Vector3d y       = corner_ + 0.5 * h_ * Eigen::Vector3d(node[0], node[1], node[2]);
     double                nearest = std::numeric_limits<double>::infinity();
     std::size_t           found   = order_.size();
     for (int k = first[2]; k <= last[2]; ++k)

@@ -2,6 +2,7 @@
 // Part of Tanktread: element matrices of the part of a cube that lies inside the shell.
 
 #include <tanktread/fluid/cut_cell.h>
+#include <tanktread/fluid/quadratic_element.h>
 
 #include <algorithm>
 #include <cmath>
@@ -32,8 +33,7 @@ namespace tanktread
 
     constexpr int n_gauss = 5;
 
-    /** Gauss points of the unit interval. */
-    constexpr double gauss_points[n_gauss] = {0.04691007703066800, 0.23076534494715845, 0.5, 0.76923465505284155, 0.95308992296933200};
+    const std::array<double, n_gauss> gauss_points = UnitGauss<n_gauss>().abscissa;
 
     /** One-dimensional functions at the Gauss points, in the pairs that the matrices are made of. */
     struct Tables
@@ -48,7 +48,8 @@ namespace tanktread
         for (int g = 0; g < n_gauss; ++g)
           {
             set_lagrange(g);
-            const double x = gauss_points[g], v[3] = {(1 - x) * (1 - 2 * x), 4 * x * (1 - x), x * (2 * x - 1)}, d[3] = {4 * x - 3, 4 - 8 * x, 4 * x - 1};
+            const double                x = gauss_points[g];
+            const std::array<double, 3> v = quadratic_values(x), d = quadratic_slopes(x);
             for (int a = 0, pair = 0; a < 3; ++a)
               for (int b = a; b < 3; ++b, ++pair)
                 {
@@ -122,7 +123,8 @@ namespace tanktread
       add_box(const Vector3 &low, const double size)
       {
         // Three Gauss points integrate degree four exactly.
-        constexpr double root = 0.774596669241483377, points[3] = {0.5 - 0.5 * root, 0.5, 0.5 + 0.5 * root}, w[3] = {5. / 18, 8. / 18, 5. / 18};
+        static const UnitGauss<3> rule;
+        const auto               &points = rule.abscissa, &w = rule.weight;
         for (int q = 0; q < 27; ++q)
           add({low[0] + size * points[q % 3], low[1] + size * points[q / 3 % 3], low[2] + size * points[q / 9]},
               size * size * size * w[q % 3] * w[q / 3 % 3] * w[q / 9]);
@@ -137,15 +139,10 @@ namespace tanktread
     double
     evaluate(const std::array<double, 27> &phi, const Vector3 &x, Vector3 &gradient)
     {
-      double v[3][3], d[3][3];
-      for (int e = 0; e < 3; ++e)
-        {
-          const double t = x[e];
-          v[e][0] = (1 - t) * (1 - 2 * t), v[e][1] = 4 * t * (1 - t), v[e][2] = t * (2 * t - 1);
-          d[e][0] = 4 * t - 3, d[e][1] = 4 - 8 * t, d[e][2] = 4 * t - 1;
-        }
-      double value = 0.;
-      gradient     = {0., 0., 0.};
+      const std::array<double, 3> v[3] = {quadratic_values(x[0]), quadratic_values(x[1]), quadratic_values(x[2])},
+                                  d[3] = {quadratic_slopes(x[0]), quadratic_slopes(x[1]), quadratic_slopes(x[2])};
+      double value                     = 0.;
+      gradient                         = {0., 0., 0.};
       for (int k = 0; k < 3; ++k)
         {
           double plane = 0., plane_x = 0., plane_y = 0.;
@@ -450,7 +447,6 @@ namespace tanktread
   const std::array<double, 5> &
   fine_gauss_abscissae()
   {
-    static const std::array<double, 5> result = {{gauss_points[0], gauss_points[1], gauss_points[2], gauss_points[3], gauss_points[4]}};
-    return result;
+    return gauss_points;
   }
 } // namespace tanktread

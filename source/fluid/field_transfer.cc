@@ -5,6 +5,7 @@
 
 #include <tanktread/base/exceptions.h>
 #include <tanktread/fluid/field_transfer.h>
+#include <tanktread/fluid/quadratic_element.h>
 
 #include <algorithm>
 #include <array>
@@ -22,7 +23,7 @@ namespace tanktread
     {
       if (block == pressure_block)
         return {{1. - x, x, 0.}};
-      return {{(1. - x) * (1. - 2. * x), 4. * x * (1. - x), x * (2. * x - 1.)}};
+      return quadratic_values(x);
     }
 
     void
@@ -69,9 +70,11 @@ namespace tanktread
   FieldTransfer::Place
   FieldTransfer::locate(const FluidMesh &mesh, const dealii::Point<3> &point) const
   {
-    const unsigned int finest    = mesh.finest_level();
-    dealii::Point<3>   inside    = point;
-    inside[2]                    = std::min(inside[2], 0.5 * mesh.side() * (1. - 1e-12)); // pressures have nodes on the upper wall
+    const unsigned int finest = mesh.finest_level();
+    dealii::Point<3>   inside = point;
+    for (unsigned int d = 0; d < 3; ++d)
+      if (!mesh.box().is_periodic(d)) // pressures have nodes on these faces, which rounding may put outside
+        inside[d] = std::clamp(inside[d], mesh.box().lower(d), -(1. - 1e-12) * mesh.box().lower(d));
     const FluidMesh::Place place = mesh.place(inside, finest);
     for (unsigned int finer = 0; finer <= finest; ++finer)
       {

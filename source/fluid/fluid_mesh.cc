@@ -23,17 +23,41 @@ namespace tanktread
   }
 
 
-  FluidMesh::FluidMesh(const MPI_Comm communicator, const double side, const FluidMeshParameters &parameters)
+  namespace
+  {
+    /** i modulo n, from 0 to n - 1 */
+    int
+    modulo(const int i, const int n)
+    {
+      return ((i % n) + n) % n;
+    }
+
+
+    /** Inserts a cell and all its ancestors. */
+    void
+    insert_with_ancestors(CellKey cell, std::unordered_set<std::uint64_t> &cells)
+    {
+      while (cells.insert(cell.packed()).second && cell.level > 0)
+        {
+          --cell.level;
+          for (int &i : cell.position)
+            i >>= 1;
+        }
+    }
+  } // namespace
+
+
+  FluidMesh::FluidMesh(const MPI_Comm communicator, const Box &box, const FluidMeshParameters &parameters)
     : communicator_(communicator)
-    , side_(side)
+    , box_(box)
     , band_width_(parameters.band_width)
     , grading_(parameters.grading)
-    , n_rung_0_(std::max(2, static_cast<int>(std::lround(side / parameters.coarsest_cell))))
     , triangulation_(communicator, Triangulation::limit_level_difference_at_vertices)
   {
-    for (; n_rung_0_ > 4 && n_rung_0_ % 2 == 0; n_rung_0_ /= 2)
-      ++coarsest_level_;
-    finest_level_ = std::max<double>(coarsest_level_, std::ceil(std::log2(side / n_rung_0_ / parameters.finest_cell) - 1e-9));
+    const BoxDivision division = divide(box, parameters.coarsest_cell);
+    n_rung_0_                  = division.n_rung_0;
+    coarsest_level_            = division.coarsest_level;
+    finest_level_              = std::max<double>(coarsest_level_, std::ceil(std::log2(cell_size(0) / parameters.finest_cell) - 1e-9));
     restart();
   }
 
@@ -43,12 +67,15 @@ namespace tanktread
   {
     rung_ = 0;
     triangulation_.clear();
-    dealii::GridGenerator::subdivided_hyper_cube(triangulation_, n_rung_0_, -0.5 * side_, 0.5 * side_, true);
+    const dealii::Point<3>          lower(box_.lower(0), box_.lower(1), box_.lower(2)), upper(-lower[0], -lower[1], -lower[2]);
+    const std::vector<unsigned int> repetitions(n_rung_0_.begin(), n_rung_0_.end());
+    dealii::GridGenerator::subdivided_hyper_rectangle(triangulation_, repetitions, lower, upper, true);
 
     // p4est keeps the 2:1 balance across the periodic faces only if it knows of them before any refinement.
     std::vector<dealii::GridTools::PeriodicFacePair<Triangulation::cell_iterator>> faces;
-    dealii::GridTools::collect_periodic_faces(triangulation_, 0, 1, 0, faces);
-    dealii::GridTools::collect_periodic_faces(triangulation_, 2, 3, 1, faces);
+    for (unsigned int d = 0; d < 3; ++d)
+      if (box_.is_periodic(d))
+        dealii::GridTools::collect_periodic_faces(triangulation_, 2 * d, 2 * d + 1, d, faces);
     triangulation_.add_periodicity(faces);
   }
 
@@ -56,24 +83,24 @@ namespace tanktread
   double
   FluidMesh::cell_size(const unsigned int level) const
   {
-    return side_ / n_rung_0_ / (1 << level);
+    return box_.side[0] / n_rung_0_[0] / (1 << level);
   }
 
 
   FluidMesh::Place
   FluidMesh::place(const dealii::Point<3> &point, const unsigned int level) const
   {
-    const int n = n_rung_0_ << level;
-    Place     result;
+    const std::array<int, 3> n = n_cubes(level);
+    Place                    result;
     result.key.level = level;
     for (unsigned int d = 0; d < 3; ++d)
       {
-        const double scaled = (point[d] / side_ + 0.5) * n;
-        if (!(std::abs(scaled) < 1e9) || (d == 2 && !(scaled >= 0. && scaled < n)))
+        const double scaled = (point[d] / box_.side[d] + 0.5) * n[d];
+        if (!(std::abs(scaled) < 1e9) || (!box_.is_periodic(d) && !(scaled >= 0. && scaled < n[d])))
           throw NumericalError("The shell has left the fluid: coordinate " + std::to_string(point[d]) + " along axis " + std::to_string(d) +
-                               ", walls at z = +-" + std::to_string(0.5 * side_) + '.');
+                               ", the faces of the box being at +-" + std::to_string(0.5 * box_.side[d]) + '.');
         const int i            = static_cast<int>(std::floor(scaled));
-        result.key.position[d] = ((i % n) + n) % n;
+        result.key.position[d] = modulo(i, n[d]);
         result.unit[d]         = scaled - i;
       }
     return result;
@@ -88,36 +115,38 @@ namespace tanktread
 
 
   void
-  FluidMesh::insert_with_ancestors(CellKey cell, KeySet &cells)
+  FluidMesh::insert_range(const unsigned int level, const std::array<int, 3> &low, const std::array<int, 3> &high, KeySet &cells) const
   {
-    while (cells.insert(cell.packed()).second && cell.level > 0)
+    const std::array<int, 3> n = n_cubes(level);
+    std::array<int, 3>       first, last;
+    for (unsigned int d = 0; d < 3; ++d)
       {
-        --cell.level;
-        for (int &i : cell.position)
-          i >>= 1;
+        first[d] = box_.is_periodic(d) ? low[d] : std::max(0, low[d]);
+        last[d]  = box_.is_periodic(d) ? high[d] : std::min(n[d] - 1, high[d]);
       }
+    for (int z = first[2]; z <= last[2]; ++z)
+      for (int y = first[1]; y <= last[1]; ++y)
+        for (int x = first[0]; x <= last[0]; ++x)
+          insert_with_ancestors({level, {{modulo(x, n[0]), modulo(y, n[1]), modulo(z, n[2])}}}, cells);
   }
 
 
   FluidMesh::KeySet
   FluidMesh::wanted_cells(const std::vector<dealii::Point<3>> &points, const double band) const
   {
-    const int n = n_rung_0_ << finest_level_;
-    KeySet    result;
+    const std::array<int, 3> n = n_cubes(finest_level_);
+    KeySet                   result;
     for (const auto &point : points)
       {
         place(point, finest_level_); // throws if the point is outside
         std::array<int, 3> low, high;
         for (unsigned int d = 0; d < 3; ++d)
           {
-            const double i = (point[d] / side_ + 0.5) * n;
+            const double i = (point[d] / box_.side[d] + 0.5) * n[d];
             low[d]         = std::floor(i - band);
             high[d]        = std::floor(i + band);
           }
-        for (int z = std::max(0, low[2]); z <= std::min(n - 1, high[2]); ++z)
-          for (int y = low[1]; y <= high[1]; ++y)
-            for (int x = low[0]; x <= high[0]; ++x)
-              insert_with_ancestors({finest_level_, {((x % n) + n) % n, ((y % n) + n) % n, z}}, result);
+        insert_range(finest_level_, low, high, result);
       }
     return result;
   }
@@ -134,12 +163,13 @@ namespace tanktread
           const CellKey cell = place(point, level).key;
           if (!done.insert(cell.packed()).second)
             break;
-          const int  n_parents = n_rung_0_ << (level - 1);
-          const auto parent    = [&](const unsigned int d, const int shift) { return (cell.position[d] + shift) >> 1; };
-          for (int z = std::max(0, parent(2, -grading_)); z <= std::min(n_parents - 1, parent(2, grading_)); ++z)
-            for (int y = parent(1, -grading_); y <= parent(1, grading_); ++y)
-              for (int x = parent(0, -grading_); x <= parent(0, grading_); ++x)
-                insert_with_ancestors({level - 1, {((x % n_parents) + n_parents) % n_parents, ((y % n_parents) + n_parents) % n_parents, z}}, wanted);
+          std::array<int, 3> low, high;
+          for (unsigned int d = 0; d < 3; ++d)
+            {
+              low[d]  = (cell.position[d] - grading_) >> 1;
+              high[d] = (cell.position[d] + grading_) >> 1;
+            }
+          insert_range(level - 1, low, high, wanted);
         }
   }
 

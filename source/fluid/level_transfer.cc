@@ -4,6 +4,7 @@
 #include <tanktread/base/exceptions.h>
 #include <tanktread/fluid/cell_averages.h>
 #include <tanktread/fluid/level_transfer.h>
+#include <tanktread/fluid/quadratic_element.h>
 
 #include <algorithm>
 #include <array>
@@ -16,7 +17,7 @@ namespace tanktread
 
   namespace
   {
-    constexpr unsigned int stride = 4; // numbers a velocity node, see NodeSpace
+    constexpr std::size_t stride = 4; // numbers a velocity node, see NodeSpace
 
     struct Entry
     {
@@ -27,6 +28,15 @@ namespace tanktread
 
     /** What the nodes of a coarse cell follow from: 27, or 8 of linear functions. */
     using CellRows = std::vector<Row>;
+
+
+    /** A row may be empty, and have no place in memory then. */
+    void
+    copy_entries(const Row &row, char *const to)
+    {
+      if (!row.empty())
+        std::memcpy(to, row.data(), row.size() * sizeof(Entry));
+    }
 
 
     /** Number of the cell, lengths of its rows, the rows. */
@@ -49,7 +59,7 @@ namespace tanktread
           result[sizeof(Index) + a] = static_cast<char>(entries.size() - before);
         }
       result.resize(header + entries.size() * sizeof(Entry));
-      std::memcpy(result.data() + header, entries.data(), entries.size() * sizeof(Entry));
+      copy_entries(entries, result.data() + header);
       return result;
     }
 
@@ -66,25 +76,28 @@ namespace tanktread
       for (unsigned int a = 0; a < rows.size(); ++a)
         {
           rows[a].resize(static_cast<unsigned char>(data[a]));
-          std::memcpy(rows[a].data(), next, rows[a].size() * sizeof(Entry));
+          if (!rows[a].empty())
+            std::memcpy(rows[a].data(), next, rows[a].size() * sizeof(Entry));
           next += rows[a].size() * sizeof(Entry);
         }
       return cell_number;
     }
 
 
-    /** Row of the node at position (i, j, k) of 5 x 5 x 5, or of 3 x 3 x 3 of linear functions, in a coarse cell; the result is in `row`, its entries for the same node added up. */
+    /**
+     * Row of the node at position (i, j, k) of 5 x 5 x 5, or of 3 x 3 x 3 of linear functions, in a coarse cell; the result is in `row`, its entries for the
+     * same node added up.
+     */
     void
     interpolate(const CellRows &rows, const std::array<unsigned int, 3> &position, Row &row)
     {
-      constexpr double   quadratic[5][3] = {{1, 0, 0}, {0.375, 0.75, -0.125}, {0, 1, 0}, {-0.125, 0.75, 0.375}, {0, 0, 1}};
-      constexpr double   linear[3][3]    = {{1, 0, 0}, {0.5, 0.5, 0}, {0, 1, 0}};
-      const unsigned int line            = rows.size() == 8 ? 2 : 3; // nodes
-      const auto         weights         = line == 2 ? linear : quadratic;
+      const unsigned int line = rows.size() == 8 ? 2 : 3; // nodes
+      const auto values = [&](const unsigned int i) { return line == 2 ? std::array<double, 3>{{1. - 0.5 * i, 0.5 * i, 0.}} : quadratic_values(0.25 * i); };
+      const std::array<double, 3> x = values(position[0]), y = values(position[1]), z = values(position[2]);
       row.clear();
       for (unsigned int a = 0; a < rows.size(); ++a)
         {
-          const double w = weights[position[0]][a % line] * weights[position[1]][a / line % line] * weights[position[2]][a / (line * line)];
+          const double w = x[a % line] * y[a / line % line] * z[a / (line * line)];
           if (w != 0.)
             for (const Entry &entry : rows[a])
               row.push_back({w * entry.weight, entry.node});
@@ -267,11 +280,11 @@ namespace tanktread
         Number sum[stride] = {};
         for (unsigned int e = start[i]; e < start[i + 1]; ++e)
           {
-            const Number *const value = values + std::size_t(stride) * node[e];
-            for (unsigned int c = 0; c < stride; ++c)
+            const Number *const value = values + stride * node[e];
+            for (std::size_t c = 0; c < stride; ++c)
               sum[c] += weight[e] * value[c];
           }
-        for (unsigned int c = 0; c < stride; ++c)
+        for (std::size_t c = 0; c < stride; ++c)
           fine[stride * i + c] += sum[c];
       }
   }
@@ -287,13 +300,13 @@ namespace tanktread
     for (std::size_t i = 0; i < n_fine_; ++i)
       {
         Number given[stride];
-        for (unsigned int c = 0; c < stride; ++c)
+        for (std::size_t c = 0; c < stride; ++c)
           given[c] = fine[stride * i + c];
         for (unsigned int e = start[i]; e < start[i + 1]; ++e)
           {
             const Number  w     = weight[e];
-            Number *const value = values + std::size_t(stride) * node[e];
-            for (unsigned int c = 0; c < stride; ++c)
+            Number *const value = values + stride * node[e];
+            for (std::size_t c = 0; c < stride; ++c)
               value[c] += w * given[c];
           }
       }

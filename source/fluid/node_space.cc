@@ -4,13 +4,15 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/fe/fe_tools.h>
 
+#include <tanktread/base/exceptions.h>
 #include <tanktread/fluid/node_space.h>
 #include <tanktread/fluid/taylor_hood_space.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <unordered_map>
+#include <stdexcept>
+#include <string>
 
 namespace tanktread
 {
@@ -159,6 +161,13 @@ namespace tanktread
     : n_components_(n_components)
     , nodes_per_cell_(space.dofs().get_fe().n_dofs_per_cell())
   {
+    if (n_components != 1 && n_components != 3 && n_components != 4)
+      throw std::logic_error("NodeSpace: " + std::to_string(n_components) + " numbers a node; allowed: 1, 3 or 4.");
+    // All nodes, those with masters too, so that no place in a full array of any rank overflows either.
+    constexpr Index most_nodes = std::numeric_limits<Index>::max() / 4 - 1;
+    if (space.dofs().n_dofs() > most_nodes)
+      throw InputError("The fluid mesh has " + std::to_string(space.dofs().n_dofs()) + " nodes; allowed: at most " + std::to_string(most_nodes) +
+                       ", which deal.II's integers can count four times (Fluid mesh/Finest cell).");
     const std::vector<Index> cell_dofs = lexicographic_dofs(space.dofs());
     Numbering                numbering(space, cell_dofs);
     for (const auto &cell : space.dofs().active_cell_iterators())
@@ -209,15 +218,15 @@ namespace tanktread
   NodeSpace::load(const FluidVector &vector, Number *const values) const
   {
     const double *const from = vector.begin();
-    if (n_components_ == 1)
-      std::copy(from, from + n_owned_, values);
-    else
+    if (n_components_ == 3)
       for (std::size_t i = 0; i < n_owned_; ++i)
         {
           for (unsigned int c = 0; c < 3; ++c)
             values[4 * i + c] = from[3 * i + c];
           values[4 * i + 3] = 0;
         }
+    else
+      std::copy(from, from + n_components_ * std::size_t(n_owned_), values);
   }
 
 

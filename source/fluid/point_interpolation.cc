@@ -6,7 +6,9 @@
 #include <tanktread/base/exceptions.h>
 #include <tanktread/base/vector4.h>
 #include <tanktread/fluid/point_interpolation.h>
+#include <tanktread/fluid/quadratic_element.h>
 
+#include <array>
 #include <string>
 
 namespace tanktread
@@ -23,23 +25,20 @@ namespace tanktread
       {
         for (unsigned int d = 0; d < 3; ++d)
           {
-            const double x = unit[d];
-            value[d][0]    = (1. - x) * (1. - 2. * x);
-            value[d][1]    = 4. * x * (1. - x);
-            value[d][2]    = x * (2. * x - 1.);
-            slope[d][0]    = (4. * x - 3.) * inverse_size;
-            slope[d][1]    = (4. - 8. * x) * inverse_size;
-            slope[d][2]    = (4. * x - 1.) * inverse_size;
+            value[d] = quadratic_values(unit[d]);
+            slope[d] = quadratic_slopes(unit[d]);
+            for (double &s : slope[d])
+              s *= inverse_size;
           }
       }
 
-      double value[3][3], slope[3][3];
+      std::array<double, 3> value[3], slope[3];
     };
 
 
     /** sum_i factors[i] rows[i] */
     inline Vector4
-    combine(const double (&factors)[3], const Vector4 (&rows)[3])
+    combine(const std::array<double, 3> &factors, const Vector4 (&rows)[3])
     {
       return factors[0] * rows[0] + factors[1] * rows[1] + factors[2] * rows[2];
     }
@@ -130,10 +129,10 @@ namespace tanktread
         {
           Vector4 u;
           if (space.is_free(nodes[a]))
-            u = Vector4(values + 3 * nodes[a]);
+            u = Vector4(values + std::size_t(3) * nodes[a]);
           else
             for (const auto &[node, weight] : space.masters(nodes[a]))
-              u += weight * Vector4(values + 3 * node);
+              u += weight * Vector4(values + std::size_t(3) * node);
           result[a / 3][a % 3] = u;
         }
     }
@@ -148,10 +147,16 @@ namespace tanktread
         {
           const Vector4 &f = load[a / 3][a % 3];
           if (space.is_free(nodes[a]))
-            (Vector4(values + 3 * nodes[a]) + f).store(values + 3 * nodes[a]);
+            {
+              double *const value = values + std::size_t(3) * nodes[a];
+              (Vector4(value) + f).store(value);
+            }
           else
             for (const auto &[node, weight] : space.masters(nodes[a]))
-              (Vector4(values + 3 * node) + weight * f).store(values + 3 * node);
+              {
+                double *const value = values + std::size_t(3) * node;
+                (Vector4(value) + weight * f).store(value);
+              }
         }
     }
   } // namespace

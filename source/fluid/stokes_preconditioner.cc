@@ -4,24 +4,15 @@
 #include <tanktread/fluid/stokes_preconditioner.h>
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace tanktread
 {
   namespace
   {
-    /** Of the trilinear functions on the unit cube. */
-    std::vector<double>
-    pressure_mass_matrix()
-    {
-      std::vector<double> result(64, 1. / 216.);
-      for (unsigned int i = 0; i < 8; ++i)
-        for (unsigned int j = 0; j < 8; ++j)
-          for (unsigned int bit = 1; bit < 8; bit *= 2)
-            result[8 * i + j] *= (i & bit) == (j & bit) ? 2. : 1.;
-      return result;
-    }
+    /** On cubes the diagonally scaled trilinear mass matrix has its eigenvalues in [1/8, 27/8]; hanging nodes change little. */
+    constexpr ChebyshevOptions all_eigenvalues = {5, 20., 1.05};
   } // namespace
 
 
@@ -30,11 +21,12 @@ namespace tanktread
     , multigrid_(multigrid)
     , pressure_multigrid_(pressure_multigrid)
     , instructions_(best_instruction_set())
-    , mass_sizes_(space.pressure->cell_sizes())
+    , pressure_mass_(*space.pressure)
+    , pressure_mass_inverse_(pressure_mass_, *space.pressure, all_eigenvalues)
+    , p_(space.pressure->full_size())
+    , r_p_(space.pressure->full_size())
     , load_(space.velocity->full_size())
   {
-    for (auto *array : {&p_, &r_p_, &residual_, &direction_})
-      array->resize(space.pressure->full_size());
     prepare_pressure_mass();
   }
 
@@ -43,8 +35,7 @@ namespace tanktread
   StokesPreconditioner::set_viscosity(const Viscosity &viscosity)
   {
     multigrid_.set_viscosity(viscosity.means());
-    for (std::size_t i = 0; i < mass_sizes_.size(); ++i)
-      mass_sizes_[i] = space_.pressure->cell_sizes()[i] / std::cbrt(viscosity.means()[i]);
+    pressure_mass_.set_viscosity(viscosity.means());
     prepare_pressure_mass();
   }
 
@@ -52,17 +43,10 @@ namespace tanktread
   void
   StokesPreconditioner::prepare_pressure_mass()
   {
-    const NodeSpace    &p = *space_.pressure;
-    std::vector<double> factors;
-    for (const double h : mass_sizes_)
-      factors.push_back(std::pow(h, 3));
-    inverse_diagonal_.clear();
-    for (const double d : p.diagonal(pressure_mass_matrix(), factors))
-      inverse_diagonal_.push_back(1. / d);
-    // On cubes the diagonally scaled trilinear mass matrix has its eigenvalues in [1/8, 27/8]; hanging nodes change little.
-    const auto   apply   = [&](float *x, float *y) { apply_pressure_mass(x, y); };
-    const double largest = largest_eigenvalue<1>(apply, p, arrays());
-    range_               = {5, largest / 20., 1.05 * largest};
+    std::vector<float> inverse_diagonal;
+    for (const double d : pressure_mass_.diagonal())
+      inverse_diagonal.push_back(1. / d);
+    pressure_mass_inverse_.prepare(std::move(inverse_diagonal), p_);
   }
 
 
@@ -79,34 +63,17 @@ namespace tanktread
   void
   StokesPreconditioner::add_inertial_pressure() const
   {
-    const unsigned int n = space_.pressure->n_owned();
-    float *const       b = pressure_multigrid_->right_hand_side();
-    for (unsigned int i = 0; i < n; ++i)
+    const std::size_t n = space_.pressure->n_owned();
+    float *const      b = pressure_multigrid_->right_hand_side();
+    for (std::size_t i = 0; i < n; ++i)
       {
         b[4 * i]     = r_p_[i];
         b[4 * i + 1] = b[4 * i + 2] = b[4 * i + 3] = 0.f;
       }
     pressure_multigrid_->v_cycle();
     const float *const solution = pressure_multigrid_->solution();
-    for (unsigned int i = 0; i < n; ++i)
+    for (std::size_t i = 0; i < n; ++i)
       p_[i] += float(shift_) * solution[4 * i];
-  }
-
-
-  ChebyshevArrays<float>
-  StokesPreconditioner::arrays() const
-  {
-    return {inverse_diagonal_, p_, r_p_, residual_, direction_};
-  }
-
-
-  void
-  StokesPreconditioner::apply_pressure_mass(float *const p, float *const y) const
-  {
-    space_.pressure->update(p);
-    std::fill(y, y + space_.pressure->full_size(), 0.f);
-    add_pressure_mass({space_.pressure->n_cells(), mass_sizes_.data(), nullptr, space_.pressure->cell_nodes(0)}, p, y);
-    space_.pressure->collect(y);
   }
 
 
@@ -117,7 +84,7 @@ namespace tanktread
     p.load(src.block(pressure_block), r_p_.data());
     for (float &r : r_p_)
       r = -r;
-    chebyshev<1>([&](float *x, float *y) { apply_pressure_mass(x, y); }, range_, arrays(), true);
+    pressure_mass_inverse_.vmult(p_, r_p_);
     if (shift_ != 0.)
       add_inertial_pressure();
     p.store(p_.data(), dst.block(pressure_block), false);

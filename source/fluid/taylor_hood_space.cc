@@ -30,7 +30,7 @@ namespace tanktread
   } // namespace
 
 
-  ScalarSpace::ScalarSpace(const FluidMesh &mesh, const unsigned int degree, const bool zero_at_walls)
+  ScalarSpace::ScalarSpace(const FluidMesh &mesh, const unsigned int degree, const bool zero_on_prescribed_faces)
     : fe_(degree)
     , dof_handler_(mesh.triangulation())
   {
@@ -41,11 +41,13 @@ namespace tanktread
     // Hanging nodes first: the other order ends in cycles (deal.II 9.4.1 then throws in debug mode and hangs in release mode).
     compat::reinit(constraints_, owned, relevant);
     dealii::DoFTools::make_hanging_node_constraints(dof_handler_, constraints_);
-    dealii::DoFTools::make_periodicity_constraints(dof_handler_, 0, 1, 0, constraints_);
-    dealii::DoFTools::make_periodicity_constraints(dof_handler_, 2, 3, 1, constraints_);
-    if (zero_at_walls)
-      for (const dealii::types::boundary_id wall : {4, 5})
-        dealii::DoFTools::make_zero_boundary_constraints(dof_handler_, wall, constraints_);
+    for (unsigned int d = 0; d < 3; ++d)
+      if (mesh.box().is_periodic(d))
+        dealii::DoFTools::make_periodicity_constraints(dof_handler_, 2 * d, 2 * d + 1, d, constraints_);
+    for (unsigned int d = 0; d < 3; ++d)
+      if (zero_on_prescribed_faces && !mesh.box().is_periodic(d))
+        for (const unsigned int face : {2 * d, 2 * d + 1})
+          dealii::DoFTools::make_zero_boundary_constraints(dof_handler_, face, constraints_);
     constraints_.close();
 
     const MPI_Comm   communicator = mesh.communicator();

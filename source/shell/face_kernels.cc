@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: the three products with a face's stencils in which the shell spends its time.
 
+#include <tanktread/base/target_clones.h>
 #include <tanktread/shell/face_kernels.h>
 
 #include <algorithm>
 
-// Compiled twice, for AVX2 with fused multiply-add and for any x86-64 processor.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 12 && !defined(__SANITIZE_ADDRESS__)
-#  define TANKTREAD_CLONES __attribute__((target_clones("arch=x86-64-v3", "default")))
-#else
-#  define TANKTREAD_CLONES
-#endif
 #define TANKTREAD_INLINE __attribute__((always_inline)) inline
 
 namespace tanktread
@@ -101,7 +96,7 @@ namespace tanktread
   } // namespace
 
 
-  TANKTREAD_CLONES void
+  TANKTREAD_CLONES_AVX2 void
   apply_stencils(const FaceStencils &face, const double *x, double *y)
   {
     for (unsigned int k = 0; k < face.n_points; ++k)
@@ -119,7 +114,7 @@ namespace tanktread
   }
 
 
-  TANKTREAD_CLONES void
+  TANKTREAD_CLONES_AVX2 void
   add_transposed_stencils(const FaceStencils &face, const double *g, double *f)
   {
     for (unsigned int i = 0; i < face.n; i += 4)
@@ -139,7 +134,7 @@ namespace tanktread
   }
 
 
-  TANKTREAD_CLONES void
+  TANKTREAD_CLONES_AVX2 void
   stencil_congruence(const FaceStencils &face, const double *hessians, const bool symmetric, double *scratch, double *block)
   {
     if (face.n == 12)

@@ -94,7 +94,7 @@ namespace tanktread
                                                        [&] { check_mesh_file(capsule); },
                                                        [&] { shell.check(); },
                                                        [&] { check_inertia(scene, solver); },
-                                                       [&] { fluid_mesh.check(scene.box().side[0]); },
+                                                       [&] { fluid_mesh.check(scene.box()); },
                                                        [&] { output.check(); },
                                                        [&] { check_output_folder(output.directory); }};
 

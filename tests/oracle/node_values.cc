@@ -66,9 +66,9 @@ namespace tanktread::oracle
             if (cell_nodes[a] < nodes.n_owned())
               {
                 dealii::Point<3> x = cell->vertex(0) + step * dealii::Point<3>(a % n, a / n % n, a / (n * n));
-                for (unsigned int d = 0; d < 2; ++d)
-                  if (x[d] > (0.5 - 1e-9) * mesh.side())
-                    x[d] -= mesh.side();
+                for (unsigned int d = 0; d < 3; ++d)
+                  if (mesh.box().is_periodic(d) && x[d] > (0.5 - 1e-9) * mesh.box().side[d])
+                    x[d] -= mesh.box().side[d];
                 result[cell_nodes[a]] = x;
               }
         }
@@ -79,13 +79,13 @@ namespace tanktread::oracle
   double
   rough_value(const FluidMesh &mesh, const dealii::Point<3> &position, const unsigned int component, const unsigned int seed)
   {
-    const std::int64_t n    = (std::int64_t(2) * mesh.n_rung_0()) << mesh.finest_level(); // half a finest cell is the unit
-    std::uint64_t      hash = 3 * std::uint64_t(seed) + component;
+    std::uint64_t hash = 3 * std::uint64_t(seed) + component;
     for (unsigned int d = 0; d < 3; ++d)
       {
-        const std::int64_t i = std::llround((position[d] / mesh.side() + 0.5) * n);
+        const std::int64_t n = (std::int64_t(2) * mesh.n_rung_0()[d]) << mesh.finest_level(); // half a finest cell is the unit
+        const std::int64_t i = std::llround((position[d] / mesh.box().side[d] + 0.5) * n);
         // The mixing step of the generator splitmix64.
-        hash = (hash + static_cast<std::uint64_t>(d < 2 ? (i + n) % n : i)) * 0x9e3779b97f4a7c15u;
+        hash = (hash + static_cast<std::uint64_t>(mesh.box().is_periodic(d) ? (i + n) % n : i)) * 0x9e3779b97f4a7c15u;
         hash = (hash ^ (hash >> 30)) * 0xbf58476d1ce4e5b9u;
         hash = (hash ^ (hash >> 27)) * 0x94d049bb133111ebu;
         hash ^= hash >> 31;

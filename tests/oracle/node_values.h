@@ -12,7 +12,7 @@ namespace tanktread::oracle
   std::vector<unsigned int>
   dofs_of_nodes(const ScalarSpace &space, const NodeSpace &nodes);
 
-  /** Positions of the owned nodes, x and y in [-side/2, side/2). */
+  /** Positions of the owned nodes, along periodic axes in [-side/2, side/2). */
   std::vector<dealii::Point<3>>
   node_positions(const FluidMesh &mesh, const NodeSpace &nodes);
 

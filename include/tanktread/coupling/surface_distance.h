@@ -40,8 +40,9 @@ namespace tanktread
   };
 
   /**
-   * Sorts the surface's points into the finest cells of the mesh, so that those near a node are found without a search. Distances are those from the nearest of the points within the cells that
-   * are closer than two cells to the node, by its quadratic_patch; they depend on the points alone, not on the mesh or the ranks.
+   * Sorts the surface's points into the finest cells of the mesh, so that those near a node are found without a search. Distances are those from the nearest of
+   * the points within the cells that are closer than two cells to the node, by its quadratic_patch; they depend on the points alone, not on the mesh or the
+   * ranks.
    */
   class SurfaceDistance
   {
@@ -70,7 +71,8 @@ namespace tanktread
     }
 
   private:
-    double                       h_, corner_;
+    double                       h_;
+    Eigen::Vector3d              corner_; // the lower one of the box
     std::vector<QuadraticPatch>  patches_;
     LatticeBlock                 block_;
     std::vector<unsigned int>    start_;            // of each cell's points in the next

@@ -14,8 +14,8 @@
 namespace tanktread
 {
   /**
-   * Finds cells by integer coordinates: a point's position on level l is floor((x - corner) / h_l), so the search is a few look-ups in a table, has no tolerance and
-   * gives each point exactly one cell (the upper one if it lies on a face) on exactly one rank.
+   * Finds cells by integer coordinates: a point's position on level l is floor((x - corner) / h_l), so the search is a few look-ups in a table, has no
+   * tolerance and gives each point exactly one cell (the upper one if it lies on a face) on exactly one rank.
    */
   class CellLocator
   {
@@ -29,7 +29,10 @@ namespace tanktread
     /** Of the mesh as it is now. */
     explicit CellLocator(const FluidMesh &mesh);
 
-    /** The point is wrapped into the box in x and y; throws NumericalError if it is not between the walls, on ranks without cells as well. */
+    /**
+     * The point is wrapped into the box along periodic axes; throws NumericalError if it is not between the faces with prescribed velocity, on ranks without
+     * cells as well.
+     */
     Location
     locate(const dealii::Point<3> &point) const;
 

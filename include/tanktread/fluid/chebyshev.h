@@ -8,8 +8,8 @@
 
 #include <tanktread/fluid/node_space.h>
 
-#include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace tanktread
@@ -25,12 +25,15 @@ namespace tanktread
   template <typename Number>
   struct ChebyshevArrays
   {
-    const std::vector<Number>     &inverse_diagonal;
-    dealii::AlignedVector<Number> &x, &b, &Ax, &direction;
+    const std::vector<Number>           &inverse_diagonal;
+    dealii::AlignedVector<Number>       &x;
+    const dealii::AlignedVector<Number> &b;
+    dealii::AlignedVector<Number>       &Ax, &direction;
   };
 
   /**
-   * x += p(D^{-1} A) D^{-1} (b - A x) with the Chebyshev polynomial of the range; x counts as zero before if `from_zero`. Afterwards Ax is that before the last step.
+   * x += p(D^{-1} A) D^{-1} (b - A x) with the Chebyshev polynomial of the range; x counts as zero before if `from_zero`. Afterwards Ax is that before the last
+   * step.
    *
    * @param apply apply(x, y) makes y = A x on owned nodes. @tparam stride numbers a node.
    */
@@ -69,28 +72,14 @@ namespace tanktread
   }
 
 
-  /** Largest eigenvalue of the symmetric matrix with `diagonal` and, beside it, `beside` (one shorter), by bisection: above it all pivots of the matrix minus x are negative. */
-  inline double
-  largest_tridiagonal_eigenvalue(const std::vector<double> &diagonal, const std::vector<double> &beside)
-  {
-    double low = diagonal[0], high = diagonal[0];
-    for (std::size_t i = 0; i < diagonal.size(); ++i)
-      high = std::max(high, diagonal[i] + (i > 0 ? beside[i - 1] : 0.) + (i < beside.size() ? beside[i] : 0.));
-    while (high - low > 1e-6 * high)
-      {
-        const double middle = 0.5 * (low + high);
-        double       pivot  = diagonal[0] - middle;
-        for (std::size_t i = 1; i < diagonal.size() && pivot < 0.; ++i)
-          pivot = diagonal[i] - middle - beside[i - 1] * beside[i - 1] / pivot;
-        (pivot < 0. ? high : low) = middle;
-      }
-    return high;
-  }
+  /** Largest eigenvalue of the symmetric matrix with `diagonal` and, beside it, `beside` (one shorter). */
+  double
+  largest_tridiagonal_eigenvalue(const std::vector<double> &diagonal, const std::vector<double> &beside);
 
 
   /**
-   * Largest eigenvalue of D^{-1} A by `n_steps` of Lanczos' method from a rough start: a lower bound, one to three per cent below, for which power iteration would need a hundred
-   * steps. The start depends on the numbering, and so does the last per cent. x, Ax and direction are overwritten. Collective.
+   * Largest eigenvalue of D^{-1} A by `n_steps` of Lanczos' method from a rough start: a lower bound, one to three per cent below, for which power iteration
+   * would need a hundred steps. The start depends on the numbering, and so does the last per cent. x, Ax and direction are overwritten. Collective.
    */
   template <unsigned int stride, typename Number, typename Apply>
   double
@@ -108,7 +97,8 @@ namespace tanktread
           before[stride * i + c] = 0;
         }
 
-    // Orthogonal vectors with respect to D: D^{-1} A x = alpha x + x_next / scale + beta^2 scale_before x_before. Norms are measured, not computed as small differences; the scale keeps them near one.
+    // Orthogonal vectors with respect to D: D^{-1} A x = alpha x + x_next / scale + beta^2 scale_before x_before. Norms are measured, not computed as
+    // small differences; the scale keeps them near one.
     std::vector<double> alpha, beta;
     double              xDx_before = 0., scale = 1.;
     for (unsigned int step = 0; step < n_steps; ++step)
@@ -144,6 +134,100 @@ namespace tanktread
       }
     return largest_tridiagonal_eigenvalue(alpha, beta);
   }
+
+
+  /** Which eigenvalues of D^{-1} A a smoother reduces: those from largest / range to largest * safety, by a polynomial of this degree. */
+  struct ChebyshevOptions
+  {
+    unsigned int degree = 2;
+    double       range  = 5.;
+    double       safety = 1.;
+  };
+
+  /**
+   * Chebyshev iteration in D^{-1} A for A x = b on the owned nodes of a space, a fixed number of steps. Operator: has apply(x, y), which makes y = A x on owned
+   * nodes of full arrays and may fill the rest of x. @tparam stride numbers a node in full arrays.
+   */
+  template <typename Operator, typename Number, unsigned int stride>
+  class ChebyshevSmoother
+  {
+  public:
+    /** Keeps operator and space by reference; prepare() has to be called before anything else. */
+    ChebyshevSmoother(const Operator &A, const NodeSpace &space, const ChebyshevOptions &options = {})
+      : A_(A)
+      , space_(space)
+      , options_(options)
+      , Ax_(space.full_size())
+      , direction_(space.full_size())
+    {}
+
+    /**
+     * Takes the inverse diagonal of A, one number an owned node, and estimates the largest eigenvalue. Collective. @param scratch a full array, which is
+     * overwritten.
+     */
+    void
+    prepare(std::vector<Number> inverse_diagonal, dealii::AlignedVector<Number> &scratch)
+    {
+      inverse_diagonal_ = std::move(inverse_diagonal);
+      largest_          = tanktread::largest_eigenvalue<stride>(apply(), space_, arrays(scratch, scratch));
+    }
+
+    /** x = p(D^{-1} A) D^{-1} b. Both are full arrays. Collective. */
+    void
+    vmult(dealii::AlignedVector<Number> &x, const dealii::AlignedVector<Number> &b) const
+    {
+      chebyshev<stride>(apply(), polynomial(), arrays(x, b), true);
+    }
+
+    /** x += p(D^{-1} A) D^{-1} (b - A x). Collective. */
+    void
+    step(dealii::AlignedVector<Number> &x, const dealii::AlignedVector<Number> &b) const
+    {
+      chebyshev<stride>(apply(), polynomial(), arrays(x, b), false);
+    }
+
+    /** b - A x in owned entries of an array that the next call overwrites. Collective. */
+    const Number *
+    residual(dealii::AlignedVector<Number> &x, const dealii::AlignedVector<Number> &b) const
+    {
+      A_.apply(x.data(), Ax_.data());
+      const std::size_t n = std::size_t(stride) * space_.n_owned();
+      for (std::size_t j = 0; j < n; ++j)
+        Ax_[j] = b[j] - Ax_[j];
+      return Ax_.data();
+    }
+
+    /** Estimated largest eigenvalue of D^{-1} A. */
+    double
+    largest_eigenvalue() const
+    {
+      return largest_;
+    }
+
+  private:
+    auto
+    apply() const
+    {
+      return [this](Number *const x, Number *const y) { A_.apply(x, y); };
+    }
+    ChebyshevRange
+    polynomial() const
+    {
+      return {options_.degree, largest_ / options_.range, largest_ * options_.safety};
+    }
+    ChebyshevArrays<Number>
+    arrays(dealii::AlignedVector<Number> &x, const dealii::AlignedVector<Number> &b) const
+    {
+      return {inverse_diagonal_, x, b, Ax_, direction_};
+    }
+
+    const Operator                       &A_;
+    const NodeSpace                      &space_;
+    const ChebyshevOptions                options_;
+    std::vector<Number>                   inverse_diagonal_;
+    double                                largest_ = 0.;
+    mutable dealii::AlignedVector<Number> Ax_, direction_; // full arrays
+  };
 } // namespace tanktread
 
 #endif

@@ -9,13 +9,16 @@
 #include <tanktread/fluid/fluid_mesh.h>
 #include <tanktread/fluid/node_space.h>
 
+#include <array>
+
 namespace tanktread
 {
   /**
-   * Inverts the velocities' Laplace matrix on a uniform mesh, periodic in x and y, zero at the walls. There it is K x M x M + M x K x M + M x M x K with one-dimensional matrices K
-   * and M of the whole box, which the eigenvectors of K v = lambda M v diagonalise together. Every rank solves the whole (small) problem.
+   * Inverts the velocities' Laplace matrix on a uniform mesh, with zero on the faces with prescribed velocity. There it is K_x x M_y x M_z + M_x x K_y x M_z +
+   * M_x x M_y x K_z with one-dimensional matrices K and M of the whole box, which the eigenvectors of K v = lambda M v of each axis diagonalise together. Every
+   * rank solves the whole (small) problem.
    *
-   * For linear functions there is no condition at the walls, and the constant, which is in the kernel then, is left out of the solution.
+   * For linear functions there is no condition on those faces, and the constant, which is in the kernel then, is left out of the solution.
    */
   template <typename Number>
   class CoarseSolver
@@ -28,18 +31,27 @@ namespace tanktread
     void
     set_shift(double shift);
 
-    /** u = A^{-1} f, owned entries of full arrays. Collective. */
+    /** dst = A^{-1} src, owned entries of full arrays, which may be the same. Collective. */
     void
-    solve(const Number *f, Number *u) const;
+    vmult(Number *dst, const Number *src) const;
 
   private:
     using Matrix = Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>;
     using Vector = Eigen::Matrix<Number, Eigen::Dynamic, 1>;
 
+    /** What K v = lambda M v has along an axis; the columns of `modes` have the norm one with respect to M. */
+    struct Axis
+    {
+      Matrix          modes;
+      Eigen::VectorXd eigenvalues;
+    };
+
+    void
+    find_places(const FluidMesh &mesh, const NodeSpace &space);
+
     MPI_Comm                  communicator_;
     std::vector<unsigned int> place_; // of the owned nodes in the lattice, x fastest
-    Matrix                    periodic_modes_, wall_modes_;
-    Eigen::VectorXd           periodic_eigenvalue_, wall_eigenvalue_;
+    std::array<Axis, 3>       axes_;
     Vector                    inverse_eigenvalue_; // of the lattice of modes
     mutable Vector            values_;
   };

@@ -15,8 +15,8 @@ namespace tanktread
   {
   public:
     /** @param inertia whether set_shift() is going to be called: prepares for it, at some cost. */
-    Fluid(MPI_Comm communicator, double side, const FluidMeshParameters &parameters, bool inertia = false)
-      : mesh_(communicator, side, parameters)
+    Fluid(MPI_Comm communicator, const Box &box, const FluidMeshParameters &parameters, bool inertia = false)
+      : mesh_(communicator, box, parameters)
     {
       if (inertia)
         pressure_multigrid_ = std::make_unique<Multigrid<float>>(linear_elements());

@@ -16,7 +16,10 @@
 
 namespace tanktread
 {
-  /** Level and integer position of a cube: along each axis it covers [i h_l, (i+1) h_l] from the lower corner of the box, h_0 being that of rung 0 and h_l = h_0 / 2^l. */
+  /**
+   * Level and integer position of a cube: along each axis it covers [i h_l, (i+1) h_l] from the lower corner of the box, h_0 being that of rung 0 and h_l = h_0
+   * / 2^l.
+   */
   struct CellKey
   {
     unsigned int       level;
@@ -28,29 +31,32 @@ namespace tanktread
   };
 
   /**
-   * Cube of side `side` centred at the origin, periodic in x and y, walls at z = ± side/2 (boundary ids 4 and 5, as deal.II colours them).
+   * Cubes that fill a box. Boundary ids are as deal.II colours them: 2d and 2d + 1 for the lower and the upper face of axis d.
    *
-   * The coarsest cells asked for are round(side / coarsest cell) along each axis, at least two because a cell must not be its own neighbour; the finest
-   * level is the first whose cells are not larger than asked for. For the multigrid's sake the mesh is grown from few cells, four or fewer along each axis where that number
-   * can be halved so far, in rungs: rung l has the cells of the finished mesh down to level l, 2:1 balanced. All calls are collective.
+   * The coarsest cells are those that divide() makes of the box; the finest level is the first whose cells are not larger than asked for. For the multigrid's
+   * sake the mesh is grown from few cells, n_rung_0(), in rungs: rung l has the cells of the finished mesh down to level l, 2:1 balanced. All calls are
+   * collective.
    */
   class FluidMesh
   {
   public:
     using Triangulation = dealii::parallel::distributed::Triangulation<3>;
 
-    FluidMesh(MPI_Comm communicator, double side, const FluidMeshParameters &parameters);
+    /** Throws InputError if no cubes near the coarsest size asked for fill the box, or nothing holds the liquid; see divide(). */
+    FluidMesh(MPI_Comm communicator, const Box &box, const FluidMeshParameters &parameters);
 
     /**
-     * Chooses the mesh to climb to: the coarsest one, 2:1 balanced, in which every cell closer than band_width h (in each coordinate) to one of `points` has the
-     * finest size h, and every cell closer than `grading` cells of size h_l > h to the cells of that size that contain points is not larger than h_l. It depends on the points alone, not on the mesh before. Returns false if that is the mesh chosen last.
+     * Chooses the mesh to climb to: the coarsest one, 2:1 balanced, in which every cell closer than band_width h (in each coordinate) to one of `points` has
+     * the finest size h, and every cell closer than `grading` cells of size h_l > h to the cells of that size that contain points is not larger than h_l. It
+     * depends on the points alone, not on the mesh before. Returns false if that is the mesh chosen last.
      *
-     * @param points on the shell, the same on all ranks, anywhere in x and y (wrapped periodically). Throws NumericalError if one is not between the walls.
+     * @param points on the shell, the same on all ranks, anywhere along periodic axes. Throws NumericalError if one is not between the faces with prescribed
+     * velocity.
      */
     bool
     aim_at(const std::vector<dealii::Point<3>> &points);
 
-    /** Back to the first rung: a uniform mesh of n_rung_0() cells along each axis. Nothing may be attached to the triangulation. */
+    /** Back to the first rung: a uniform mesh of n_rung_0() cells along the axes. Nothing may be attached to the triangulation. */
     void
     restart();
 
@@ -80,8 +86,9 @@ namespace tanktread
     };
 
     /**
-     * The cube of level `level` that contains the point, wrapped into the box in x and y. Cube and position come from one rounding, so a point at a face is at the lower end of
-     * the upper cube or (nearly) at the upper end of the lower one, never one cube away. Throws NumericalError if the point is not between the walls or not a number.
+     * The cube of level `level` that contains the point, wrapped into the box along periodic axes. Cube and position come from one rounding, so a point at a
+     * face is at the lower end of the upper cube or (nearly) at the upper end of the lower one, never one cube away. Throws NumericalError if the point is not
+     * between the faces with prescribed velocity or not a number.
      */
     Place
     place(const dealii::Point<3> &point, unsigned int level) const;
@@ -103,10 +110,10 @@ namespace tanktread
     {
       return triangulation_;
     }
-    double
-    side() const
+    const Box &
+    box() const
     {
-      return side_;
+      return box_;
     }
     unsigned int
     finest_level() const
@@ -119,10 +126,17 @@ namespace tanktread
     {
       return coarsest_level_;
     }
-    int
+    /** Cells of the first rung along the axes. */
+    const std::array<int, 3> &
     n_rung_0() const
     {
       return n_rung_0_;
+    }
+    /** How many cubes of a level there are room for along the axes. */
+    std::array<int, 3>
+    n_cubes(const unsigned int level) const
+    {
+      return {{n_rung_0_[0] << level, n_rung_0_[1] << level, n_rung_0_[2] << level}};
     }
     MPI_Comm
     communicator() const
@@ -141,18 +155,22 @@ namespace tanktread
     void
     add_grading(const std::vector<dealii::Point<3>> &points, KeySet &wanted) const;
 
-    /** Inserts a cell and all its ancestors. */
-    static void
-    insert_with_ancestors(CellKey cell, KeySet &cells);
+    /**
+     * Inserts the cubes of a level from position `low` to position `high` and all their ancestors, wrapped along periodic axes; those beyond other faces are
+     * left out.
+     */
+    void
+    insert_range(unsigned int level, const std::array<int, 3> &low, const std::array<int, 3> &high, KeySet &cells) const;
 
-    MPI_Comm      communicator_;
-    double        side_;
-    double        band_width_;
-    int           grading_, n_rung_0_;
-    unsigned int  coarsest_level_ = 0, finest_level_, rung_ = 0;
-    bool          aimed_ = false; // has a mesh been chosen?
-    KeySet        wanted_;        // of the mesh chosen last
-    Triangulation triangulation_;
+    MPI_Comm           communicator_;
+    Box                box_;
+    double             band_width_;
+    int                grading_;
+    std::array<int, 3> n_rung_0_;
+    unsigned int       coarsest_level_, finest_level_, rung_ = 0;
+    bool               aimed_ = false; // has a mesh been chosen?
+    KeySet             wanted_;        // of the mesh chosen last
+    Triangulation      triangulation_;
   };
 } // namespace tanktread
 

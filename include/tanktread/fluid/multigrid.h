@@ -6,7 +6,7 @@
 
 #include <tanktread/fluid/cell_averages.h>
 #include <tanktread/fluid/chebyshev.h>
-#include <tanktread/fluid/coarse_solver.h>
+#include <tanktread/fluid/first_rung_solver.h>
 #include <tanktread/fluid/laplace_operator.h>
 #include <tanktread/fluid/level_transfer.h>
 
@@ -15,8 +15,9 @@
 namespace tanktread
 {
   /**
-   * Climbs with a mesh to its last rung and keeps what the V-cycle needs of each rung: global coarsening, so that every rung is a complete mesh with its own hanging nodes and its own
-   * periodicity. Smoothing by Chebyshev polynomials in D^{-1} A, D the diagonal; a direct solver on the first rung. Number: float is enough for a preconditioner.
+   * Climbs with a mesh to its last rung and keeps what the V-cycle needs of each rung: global coarsening, so that every rung is a complete mesh with its own
+   * hanging nodes and its own periodicity. Smoothing by Chebyshev polynomials in D^{-1} A, D the diagonal; FirstRungSolver on the first rung. Number: float is
+   * enough for a preconditioner.
    */
   template <typename Number>
   class Multigrid
@@ -24,10 +25,10 @@ namespace tanktread
   public:
     struct Options
     {
-      unsigned int degree = 2;  // of the polynomial, before and after the coarse correction
-      double       range  = 5.; // it reduces errors with eigenvalues between largest / range and largest
-      unsigned int elements =
-        2; // their degree: 2 for velocities, 1 for scalars like the pressure, in the first of three components, without a condition at the walls
+      /** Before and after the coarse correction. */
+      ChebyshevOptions smoother;
+      /** Degree of the elements: 2 for velocities, 1 for scalars like the pressure, in the first of three components, without a condition on any face. */
+      unsigned int elements = 2;
     };
 
     explicit Multigrid(const Options &options = {});
@@ -41,15 +42,17 @@ namespace tanktread
     climb(FluidMesh &mesh);
 
     /**
-     * Makes the V-cycle one for (mu grad u, grad v). Cells of coarser rungs take the mean of mu over their volume. On the first rung the direct solver of constant viscosity preconditions a
-     * Chebyshev iteration, as long as what mu varies there asks for.
+     * Makes the V-cycle one for (mu grad u, grad v). Cells of coarser rungs take the mean of mu over their volume.
      *
      * @param viscosities mu of each cell of the last rung. Collective.
      */
     void
     set_viscosity(const std::vector<double> &viscosities);
 
-    /** From now on v_cycle() is for A + shift times the mass matrix, also after the next climb. Costs about as much as two cycles unless that is so already. Collective. */
+    /**
+     * From now on v_cycle() is for A + shift times the mass matrix, also after the next climb. Costs about as much as two cycles unless that is so already.
+     * Collective.
+     */
     void
     set_shift(double shift);
 
@@ -81,46 +84,42 @@ namespace tanktread
     {
       return levels_.size();
     }
-    /** Estimated largest eigenvalue of D^{-1} A on the last rung. */
+    /** Estimated largest eigenvalue of D^{-1} A on the last rung; zero if that is the first one. */
     double
     largest_eigenvalue() const
     {
-      return levels_.back().largest_eigenvalue;
+      return levels_.size() > 1 ? levels_.back().smoother->largest_eigenvalue() : 0.;
     }
 
   private:
+    using Smoother = ChebyshevSmoother<LaplaceOperator<Number>, Number, 4>;
+
     struct Level
     {
       std::shared_ptr<const NodeSpace>         space;
       std::unique_ptr<LaplaceOperator<Number>> laplace;
-      std::unique_ptr<LevelTransfer<Number>>   transfer; // from the level before
-      std::unique_ptr<CellAverages>            averages; // for the level before
-      std::vector<Number>                      inverse_diagonal;
-      double                                   largest_eigenvalue = 0.;
-      dealii::AlignedVector<Number>            x, b, residual, direction; // full arrays
+      dealii::AlignedVector<Number>            x, b; // full arrays
+      // On all rungs but the first:
+      std::unique_ptr<Smoother>              smoother;
+      std::unique_ptr<LevelTransfer<Number>> transfer; // from the level before
+      std::unique_ptr<CellAverages>          averages; // for the level before
     };
 
     std::shared_ptr<const NodeSpace>
     nodes(const FluidMesh &mesh) const;
+    /** Operator and arrays of the last level, whose space is known. */
     void
-    finish_level();
+    make_operator();
     /** Diagonal and largest eigenvalue. */
     void
     prepare_smoother(Level &level);
     void
-    solve_first_rung();
-    static ChebyshevArrays<Number>
-    arrays(Level &level);
-    void
-    smooth(Level &level, bool from_zero) const;
-    void
     cycle(unsigned int l);
 
-    Options                               options_;
-    double                                shift_ = 0.;
-    std::vector<Level>                    levels_;
-    std::unique_ptr<CoarseSolver<Number>> coarse_solver_;
-    double                                smallest_viscosity_ = 1., largest_viscosity_ = 1.; // on the first rung
+    Options                                  options_;
+    double                                   shift_ = 0.;
+    std::vector<Level>                       levels_;
+    std::unique_ptr<FirstRungSolver<Number>> first_rung_solver_;
   };
 } // namespace tanktread
 

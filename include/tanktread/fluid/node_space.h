@@ -17,21 +17,26 @@ namespace tanktread
   class ScalarSpace;
 
   /**
-   * The nodes of a Q1 or Q2 field with `n_components` (1 or 3) numbers a node, kept together.
+   * The nodes of a Q1 or Q2 field with `n_components` (1, 3 or 4) numbers a node, kept together.
    *
-   * Only free nodes are unknowns; they have global numbers, contiguous on each rank, in the order in which the cells meet them. Vectors of unknowns have entries
-   * n_components * node + component and live on partitioner(). Kernels work on *full arrays* of one rank, n_local() nodes long, with entries stride() * node + component:
+   * Only free nodes are unknowns; they have global numbers, contiguous on each rank, in the order in which the cells meet them. Vectors of unknowns have
+   * entries n_components * node + component and live on partitioner(). Kernels work on *full arrays* of one rank, n_local() nodes long, with entries stride() *
+   * node + component:
    *
-   *     owned free nodes | ghosts (free nodes of other ranks) | nodes with several masters (hanging ones) | one node that is always zero (the walls)
+   *     owned free nodes | ghosts (free nodes of other ranks) | nodes with several masters (hanging ones) | one that is always zero (prescribed velocities)
    *
    * Three components have a stride of four numbers, which makes a node one aligned load (measured: kernels twice as fast); the fourth is zero or void.
    *
-   * A periodic copy has no place of its own: the cells refer to its master. So cell loops need no constraints, and those nodes that have masters are computed once each.
+   * A periodic copy has no place of its own: the cells refer to its master. So cell loops need no constraints, and those nodes that have masters are computed
+   * once each.
    */
   class NodeSpace
   {
   public:
-    /** Collective. Nothing of `space` is kept. */
+    /**
+     * Collective. Nothing of `space` is kept. Throws std::logic_error for another number of components, InputError if there are more nodes than can be counted
+     * four times with the integers of this build of deal.II.
+     */
     NodeSpace(const ScalarSpace &space, unsigned int n_components);
 
     unsigned int
@@ -53,7 +58,7 @@ namespace tanktread
     unsigned int
     stride() const
     {
-      return n_components_ == 3 ? 4 : n_components_;
+      return n_components_ == 1 ? 1 : 4;
     }
     /** Length of a full array. */
     std::size_t
@@ -158,7 +163,8 @@ namespace tanktread
     collect(Number *values) const;
 
     /**
-     * Diagonal of the condensed matrix assembled of size^power cell_matrix over the cells, hanging nodes included exactly: one number an owned node. Collective.
+     * Diagonal of the condensed matrix assembled of size^power cell_matrix over the cells, hanging nodes included exactly: one number an owned node.
+     * Collective.
      *
      * @param cell_matrix of the unit cube, row by row.
      */

@@ -17,12 +17,15 @@
 
 namespace tanktread
 {
-  /** One continuous scalar finite-element field of degree 1 or 2 on the mesh, with its constraints closed: hanging nodes, periodicity in x and y, zero at the walls. */
+  /**
+   * One continuous scalar finite-element field of degree 1 or 2 on the mesh, with its constraints closed: hanging nodes, periodicity, zero on the faces with
+   * prescribed velocity.
+   */
   class ScalarSpace
   {
   public:
     /** Collective. Throws NumericalError if the ranks disagree about a constraint (a deal.II defect that would otherwise give wrong answers silently). */
-    ScalarSpace(const FluidMesh &mesh, unsigned int degree, bool zero_at_walls);
+    ScalarSpace(const FluidMesh &mesh, unsigned int degree, bool zero_on_prescribed_faces);
 
     const dealii::DoFHandler<3> &
     dofs() const
@@ -52,7 +55,7 @@ namespace tanktread
   /**
    * The pair of spaces. All three velocity components have the same nodes: one scalar Q2 space numbers them.
    *
-   * Velocities are disturbances: they vanish at the walls, whatever the undisturbed flow is.
+   * Velocities are disturbances: they vanish on the faces with prescribed velocity, whatever the undisturbed flow is.
    */
   struct TaylorHoodSpace
   {
