@@ -161,7 +161,12 @@ namespace tanktread
 
 
   void
-  Results::add_fields(const double time, const ShellView &shell, const ControlPoints &velocity, const Fluid &fluid, const State &state, const double shear_rate)
+  Results::add_fields(const double           time,
+                      const ShellView       &shell,
+                      const ControlPoints   &velocity,
+                      const Fluid           &fluid,
+                      const State           &state,
+                      const UndisturbedFlow &flow)
   {
     std::ostringstream number;
     number << std::setw(4) << std::setfill('0') << n_fields_;
@@ -174,7 +179,7 @@ namespace tanktread
         y[d] -= side * std::round((y[d] - interior.centre()[d]) / side);
       return interior.contains(y) ? state.pressure_jump : 0.;
     };
-    const std::string fluid_file = write_fluid_fields(folder_, "fluid", n_fields_, fluid.space(), state.fluid, shear_rate, interior_pressure);
+    const std::string fluid_file = write_fluid_fields(folder_, "fluid", n_fields_, fluid.space(), state.fluid, flow, interior_pressure);
     on_first_rank(communicator_, [&] {
       const std::string shell_file = "shell_" + number.str() + ".vtu";
       write_shell(folder_ + "/" + shell_file, shell, state, velocity);

@@ -246,7 +246,7 @@ namespace tanktread
     const bool fields = first || last || (fields_wanted && is_due(next_fields_, parameters_.output.field_interval));
     add_contours(step.length, fields);
     if (fields)
-      results_->add_fields(time_, view_, velocity, fluid_, state_, flow_.shear_rate);
+      results_->add_fields(time_, view_, velocity, fluid_, state_, flow_.in_fluid());
     const double remaining = n_steps_ == 0 ? -1. : o.wall_time * (parameters_.scene.end_time - time_) / time_;
     log_.step(
       {n_steps_, time_, step.length, step.newton_iterations, step.linear_iterations, o.ellipsoid.taylor_parameter, o.theta_over_pi, o.volume_error, remaining});

@@ -36,7 +36,7 @@ namespace tanktread
                              const SubdivisionSurface &surface,
                              Coupling                 &coupling,
                              const double              volume,
-                             const UndisturbedFlow     flow,
+                             const ShearFlow           flow,
                              Timings                  &timings,
                              const double              viscosity_ratio,
                              const double              reynolds_number)
@@ -62,7 +62,7 @@ namespace tanktread
     coupling_.attach(fluid.space());
     viscosity_x_.resize(0, 3);
     if (reynolds_number_ > 0.)
-      inertia_ = std::make_unique<Inertia>(fluid.space(), reynolds_number_, flow_.shear_rate);
+      inertia_ = std::make_unique<Inertia>(fluid.space(), reynolds_number_, flow_.in_fluid());
   }
 
 
@@ -74,12 +74,8 @@ namespace tanktread
     const Timings::Scope scope(timings_, "Viscosity");
     viscosity_x_ = x;
     fluid_->set_viscosity(coupling_.viscosity(x));
-    dealii::Tensor<2, 3> gradient;
-    for (unsigned int c = 0; c < 3; ++c)
-      for (unsigned int d = 0; d < 3; ++d)
-        gradient[c][d] = flow_.gradient()(c, d);
     undisturbed_load_.reinit(fluid_->space().velocity->partitioner());
-    fluid_->viscosity()->add_excess_stress(fluid_->space(), gradient, undisturbed_load_);
+    fluid_->viscosity()->add_excess_stress(fluid_->space(), flow_.in_fluid(), undisturbed_load_);
   }
 
 

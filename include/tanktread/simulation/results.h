@@ -66,7 +66,7 @@ namespace tanktread
 
     /** Writes shell, contour and fluid. `velocity`: of the control points, NP x 3. */
     void
-    add_fields(double time, const ShellView &shell, const ControlPoints &velocity, const Fluid &fluid, const State &state, double shear_rate);
+    add_fields(double time, const ShellView &shell, const ControlPoints &velocity, const Fluid &fluid, const State &state, const UndisturbedFlow &flow);
 
     /** The cut of the shell with control points x alone. */
     void

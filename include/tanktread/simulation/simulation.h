@@ -67,7 +67,7 @@ namespace tanktread
     SubdivisionSurface           coupling_surface_;
     Coupling                     coupling_;
     ShellView                    view_;
-    UndisturbedFlow              flow_;
+    ShearFlow                    flow_;
     NewtonSolver                 solver_;
     TimeStepper                  stepper_;
     State                        state_;

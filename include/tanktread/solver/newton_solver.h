@@ -67,7 +67,7 @@ namespace tanktread
                  const SubdivisionSurface &surface,
                  Coupling                 &coupling,
                  double                    volume,
-                 UndisturbedFlow           flow,
+                 ShearFlow                 flow,
                  Timings                  &timings,
                  double                    viscosity_ratio = 1.,
                  double                    reynolds_number = 0.);
@@ -198,7 +198,7 @@ namespace tanktread
     const SubdivisionSurface &surface_;
     Coupling                 &coupling_;
     const double              volume_;
-    const UndisturbedFlow     flow_;
+    const ShearFlow           flow_;
     Timings                  &timings_;
     ImplicitShell             implicit_shell_;
     Tangent                   tangent_ = Tangent::exact; // to start a step with

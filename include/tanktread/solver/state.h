@@ -5,12 +5,13 @@
 #define tanktread_solver_state_h
 
 #include <tanktread/coupling/jump_enrichment.h>
+#include <tanktread/fluid/undisturbed_flow.h>
 #include <tanktread/surface/types.h>
 
 namespace tanktread
 {
   /** The undisturbed flow (shear_rate * z, 0, 0); all fluid unknowns are disturbances of it. */
-  struct UndisturbedFlow
+  struct ShearFlow
   {
     double shear_rate = 0.;
 
@@ -30,6 +31,12 @@ namespace tanktread
       Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
       result(0, 2)           = shear_rate;
       return result;
+    }
+
+    UndisturbedFlow
+    in_fluid() const
+    {
+      return simple_shear(shear_rate);
     }
   };
 
