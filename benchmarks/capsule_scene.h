@@ -50,20 +50,20 @@ namespace tanktread
       coupling.move(x, volume_gradient(surface, x));
     }
 
-    SolverParameters      parameters;
-    const UndisturbedFlow flow{1.};
-    FittedShape           shape;
-    SubdivisionSurface    surface;
-    Shell                 shell;
-    FluidMeshParameters   mesh_parameters;
-    Fluid                 fluid;
-    SubdivisionSurface    coupling_surface;
-    Coupling              coupling;
-    double                volume;
-    DistributedShell      distributed_shell;
-    Timings               timings;
-    NewtonSolver          solver;
-    ControlPoints         deformed;
+    SolverParameters    parameters;
+    const ShearFlow     flow{1.};
+    FittedShape         shape;
+    SubdivisionSurface  surface;
+    Shell               shell;
+    FluidMeshParameters mesh_parameters;
+    Fluid               fluid;
+    SubdivisionSurface  coupling_surface;
+    Coupling            coupling;
+    double              volume;
+    DistributedShell    distributed_shell;
+    Timings             timings;
+    NewtonSolver        solver;
+    ControlPoints       deformed;
   };
 
 

@@ -67,7 +67,7 @@ namespace
    * the sum of the components, the factor and the sum over the cells. Its transpose: 2 and 6 a line.
    * Strain form: three nodes of a line to its three points take 10 for values, 11 for derivatives, and so does the transpose; 8 sweeps of 9 lines each way, 3 of them
    * derivatives; adding up two sweeps; at a point the factor, and sum and product for nine derivatives.
-   * Inertia: 9 sweeps for value and gradient of a field, 3 of them derivatives, and 3 back; at a point the wind, v . grad u, u . grad u_inf, mass and factors. Its derivative does all
+   * Inertia: 9 sweeps for value and gradient of a field, 3 of them derivatives, and 3 back; at a point the wind, v . grad u, u . grad u_inf, mass and factors, as for a simple shear. Its derivative does all
    * but the way back for two fields, and v . grad u twice.
    */
   struct Operations
@@ -94,14 +94,14 @@ namespace
       , y_u(u.size())
       , y_p(p.size())
       , viscosity(27 * std::size_t(space.velocity->n_cells()), Number(1))
-      , lower_z(space.velocity->n_cells(), 0.)
+      , corners(lower_corners(space))
     {
       for (auto *array : {&u, &p})
         for (std::size_t i = 0; i < array->size(); ++i)
           (*array)[i] = Number(i % 17) - Number(8);
     }
     dealii::AlignedVector<Number> u, p, y_u, y_p, viscosity;
-    std::vector<double>           lower_z;
+    std::vector<double>           corners;
   };
 
 
@@ -127,8 +127,9 @@ namespace
     const double  u = x.u.size(), p = x.p.size(); // numbers of an array; what a kernel adds to is read and written
     const double  n_u = space.velocity->partitioner()->size(), n_p = space.pressure->partitioner()->size();
     Number *const in_u = x.u.data(), *const in_p = x.p.data(), *const y_u = x.y_u.data(), *const y_p = x.y_p.data(), *const mu = x.viscosity.data();
-    const InertiaCoefficients<Number> inertia{1, 1, 1};
-    const double *const               z = x.lower_z.data();
+    const InertiaCoefficients<Number> inertia{1, 1};
+    const UndisturbedFlow             shear = simple_shear(), parabola = plane_poiseuille(5.);
+    const double *const               at = x.corners.data();
     return {
       {"Laplace", [=](Set s) { add_laplace<Number>(s, c, in_u, y_u); }, O::laplace + O::add, 3 * u, 27, n_u},
       {"Helmholtz", [=](Set s) { add_helmholtz<Number>(s, c, c.size, in_u, y_u); }, O::helmholtz + O::add, 3 * u, 27, n_u},
@@ -141,8 +142,20 @@ namespace
       {"pressure gradient", [=](Set s) { add_pressure_gradient<Number>(s, c, in_p, y_u); }, O::gradient + O::add, p + 2 * u, 35, n_u + n_p},
       {"pressure mass", [=](Set) { add_pressure_mass<Number>(c, in_p, y_p); }, O::mass, 3 * p, 8, n_p, true},
       {"strain form", [=](Set s) { add_viscous<Number>(s, c, mu, in_u, y_u); }, O::strain_form + O::add, 3 * u + 27. * c.n, 27, n_u},
-      {"inertia", [=](Set s) { add_inertia<Number>(s, c, z, inertia, in_u, y_u); }, O::inertia + O::add, 3 * u + c.n, 27, n_u},
-      {"its derivative", [=](Set s) { add_inertia_derivative<Number>(s, c, z, inertia, in_u, in_u, y_u); }, O::derivative + O::add, 3 * u + c.n, 27, n_u},
+      {"inertia, shear", [=](Set s) { add_inertia<Number>(s, c, at, shear, inertia, in_u, y_u); }, O::inertia + O::add, 3 * u + 3. * c.n, 27, n_u},
+      {"its derivative",
+       [=](Set s) { add_inertia_derivative<Number>(s, c, at, shear, inertia, in_u, in_u, y_u); },
+       O::derivative + O::add,
+       3 * u + 3. * c.n,
+       27,
+       n_u},
+      {"inertia, parabola", [=](Set s) { add_inertia<Number>(s, c, at, parabola, inertia, in_u, y_u); }, O::inertia + O::add, 3 * u + 3. * c.n, 27, n_u},
+      {"its derivative",
+       [=](Set s) { add_inertia_derivative<Number>(s, c, at, parabola, inertia, in_u, in_u, y_u); },
+       O::derivative + O::add,
+       3 * u + 3. * c.n,
+       27,
+       n_u},
     };
   }
 

@@ -33,7 +33,7 @@ namespace tanktread
 
     /** Total velocity as one vector-valued field, because ParaView draws glyphs and streamlines of vectors only. */
     FluidVector
-    total_velocity(const TaylorHoodSpace &space, const FluidBlockVector &fields, const double shear_rate, const dealii::DoFHandler<3> &dofs)
+    total_velocity(const TaylorHoodSpace &space, const FluidBlockVector &fields, const UndisturbedFlow &undisturbed, const dealii::DoFHandler<3> &dofs)
     {
       const NodeSpace                             &nodes  = *space.velocity;
       const dealii::AlignedVector<double>          values = full_array(nodes, fields.block(velocity_block));
@@ -49,13 +49,15 @@ namespace tanktread
             const double              h          = nodes.cell_sizes()[number++];
             cell->get_dof_indices(indices);
             for (unsigned int a = 0; a < 27; ++a)
-              for (unsigned int c = 0; c < 3; ++c)
-                {
-                  const auto   i = indices[fe.component_to_system_index(c, order[a])];
-                  const double z = cell->vertex(0)[2] + 0.5 * h * (a / 9);
-                  if (result.locally_owned_elements().is_element(i))
-                    result(i) = values[nodes.stride() * cell_nodes[a] + c] + (c == 0 ? shear_rate * z : 0.);
-                }
+              {
+                const dealii::Tensor<1, 3> u_inf = undisturbed.velocity(cell->vertex(0) + 0.5 * h * dealii::Point<3>(a % 3, a / 3 % 3, a / 9));
+                for (unsigned int c = 0; c < 3; ++c)
+                  {
+                    const auto i = indices[fe.component_to_system_index(c, order[a])];
+                    if (result.locally_owned_elements().is_element(i))
+                      result(i) = values[nodes.stride() * cell_nodes[a] + c] + u_inf[c];
+                  }
+              }
           }
       result.update_ghost_values();
       return result;
@@ -94,7 +96,7 @@ namespace tanktread
                      const unsigned int                                     counter,
                      const TaylorHoodSpace                                 &space,
                      const FluidBlockVector                                &fields,
-                     const double                                           shear_rate,
+                     const UndisturbedFlow                                 &undisturbed,
                      const std::function<double(const dealii::Point<3> &)> &further_pressure)
   {
     const dealii::FESystem<3> velocity_fe(dealii::FE_Q<3>(2), 3);
@@ -102,7 +104,7 @@ namespace tanktread
     dealii::DoFHandler<3>     velocity_dofs(space.mesh.triangulation()), pressure_dofs(space.mesh.triangulation());
     velocity_dofs.distribute_dofs(velocity_fe);
     pressure_dofs.distribute_dofs(pressure_fe);
-    const FluidVector     velocity = total_velocity(space, fields, shear_rate, velocity_dofs);
+    const FluidVector     velocity = total_velocity(space, fields, undisturbed, velocity_dofs);
     const FluidVector     pressure = total_pressure(space, fields, further_pressure, pressure_dofs);
     dealii::Vector<float> rank(space.mesh.triangulation().n_active_cells());
     rank = space.mesh.triangulation().locally_owned_subdomain();

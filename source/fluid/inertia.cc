@@ -8,27 +8,30 @@
 
 namespace tanktread
 {
-  Inertia::Inertia(const TaylorHoodSpace &space, const double reynolds_number, const double shear_rate)
+  Inertia::Inertia(const TaylorHoodSpace &space, const double reynolds_number, const UndisturbedFlow &undisturbed)
     : space_(space)
     , instructions_(best_instruction_set())
     , reynolds_number_(reynolds_number)
-    , shear_rate_(shear_rate)
+    , undisturbed_(undisturbed)
+    , corners_(lower_corners(space))
     , history_(space.velocity->partitioner())
     , flow_(space.velocity->full_size())
     , u_(flow_.size())
     , y_(flow_.size())
+  {}
+
+
+  void
+  Inertia::set_flow(const UndisturbedFlow &undisturbed)
   {
-    lower_z_.reserve(space.velocity->n_cells());
-    for (const auto &cell : space.mesh.triangulation().active_cell_iterators())
-      if (cell->is_locally_owned())
-        lower_z_.push_back(cell->vertex(0)[2]);
+    undisturbed_ = undisturbed;
   }
 
 
   InertiaCoefficients<double>
   Inertia::coefficients() const
   {
-    return {mass_, reynolds_number_, shear_rate_};
+    return {mass_, reynolds_number_};
   }
 
 
@@ -40,7 +43,7 @@ namespace tanktread
     node.load(uhat, u_.data());
     node.update(u_.data());
     std::fill(y_.begin(), y_.end(), 0.);
-    add_inertia(instructions_, cubes(space_), lower_z_.data(), {mass_, 0., 0.}, u_.data(), y_.data());
+    add_inertia(instructions_, cubes(space_), corners_.data(), {}, {mass_, 0.}, u_.data(), y_.data());
     node.collect(y_.data());
     node.store(y_.data(), history_, false);
   }
@@ -53,7 +56,7 @@ namespace tanktread
     node.load(u.block(velocity_block), u_.data());
     node.update(u_.data());
     std::fill(y_.begin(), y_.end(), 0.);
-    add_inertia(instructions_, cubes(space_), lower_z_.data(), coefficients(), u_.data(), y_.data());
+    add_inertia(instructions_, cubes(space_), corners_.data(), undisturbed_, coefficients(), u_.data(), y_.data());
     node.collect(y_.data());
     node.store(y_.data(), residual.block(velocity_block), true);
     residual.block(velocity_block).add(-1., history_);
@@ -76,7 +79,7 @@ namespace tanktread
     node.load(du.block(velocity_block), u_.data());
     node.update(u_.data());
     std::fill(y_.begin(), y_.end(), 0.);
-    add_inertia_derivative(instructions_, cubes(space_), lower_z_.data(), coefficients(), flow_.data(), u_.data(), y_.data());
+    add_inertia_derivative(instructions_, cubes(space_), corners_.data(), undisturbed_, coefficients(), flow_.data(), u_.data(), y_.data());
     node.collect(y_.data());
     node.store(y_.data(), y.block(velocity_block), true);
   }

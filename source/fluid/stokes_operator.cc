@@ -15,6 +15,19 @@ namespace tanktread
   }
 
 
+  std::vector<double>
+  lower_corners(const TaylorHoodSpace &space)
+  {
+    std::vector<double> result;
+    result.reserve(3 * std::size_t(space.velocity->n_cells()));
+    for (const auto &cell : space.mesh.triangulation().active_cell_iterators())
+      if (cell->is_locally_owned())
+        for (unsigned int d = 0; d < 3; ++d)
+          result.push_back(cell->vertex(0)[d]);
+    return result;
+  }
+
+
   StokesOperator::StokesOperator(const TaylorHoodSpace &space)
     : space_(space)
     , instructions_(best_instruction_set())

@@ -40,7 +40,14 @@ namespace tanktread
   bool
   UndisturbedFlow::is_zero() const
   {
-    return constant.norm_square() == 0. && linear.norm_square() == 0. && quadratic.norm_square() == 0.;
+    return constant.norm_square() == 0. && linear.norm_square() == 0. && is_linear();
+  }
+
+
+  bool
+  UndisturbedFlow::is_linear() const
+  {
+    return quadratic.norm_square() == 0.;
   }
 
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: a viscosity that differs from place to place.
 
+#include <tanktread/fluid/stokes_operator.h>
 #include <tanktread/fluid/viscosity.h>
 
 #include <algorithm>
@@ -12,83 +13,22 @@ namespace tanktread
 {
   namespace
   {
-    /** Gradients of the 27 quadratic functions. */
-    std::array<dealii::Tensor<1, 3>, 27>
-    gradients(const double x, const double y, const double z)
+    using CellArray = std::array<double, 4 * 27>; // of a cell's own, four numbers a node
+
+    /** The flow less its value at the cell's corner: the 27 nodes hold it exactly, being of degree two. */
+    CellArray
+    nodal_values(const UndisturbedFlow &flow, const dealii::Point<3> &corner, const double h)
     {
-      const double t[3] = {x, y, z};
-      double       value[3][3], slope[3][3];
-      for (unsigned int d = 0; d < 3; ++d)
-        {
-          value[d][0] = (1. - t[d]) * (1. - 2. * t[d]);
-          value[d][1] = 4. * t[d] * (1. - t[d]);
-          value[d][2] = t[d] * (2. * t[d] - 1.);
-          slope[d][0] = 4. * t[d] - 3.;
-          slope[d][1] = 4. - 8. * t[d];
-          slope[d][2] = 4. * t[d] - 1.;
-        }
-      std::array<dealii::Tensor<1, 3>, 27> result;
-      for (unsigned int a = 0; a < 27; ++a)
-        for (unsigned int d = 0; d < 3; ++d)
-          result[a][d] = (d == 0 ? slope : value)[0][a % 3] * (d == 1 ? slope : value)[1][a / 3 % 3] * (d == 2 ? slope : value)[2][a / 9];
-      return result;
-    }
-
-
-    /** Rule with n points along each axis: weights of the points in all functions' gradients, [point][a], and alone. */
-    struct Rule
-    {
-      std::vector<double>                               weights;
-      std::vector<std::array<dealii::Tensor<1, 3>, 27>> gradients;
-    };
-
-    const Rule &
-    coarse_rule()
-    {
-      static const Rule result = [] {
-        constexpr double w[3] = {5. / 18, 8. / 18, 5. / 18};
-        const auto      &x    = gauss_abscissae();
-        Rule             rule;
-        for (unsigned int q = 0; q < 27; ++q)
-          {
-            rule.weights.push_back(w[q % 3] * w[q / 3 % 3] * w[q / 9]);
-            rule.gradients.push_back(gradients(x[q % 3], x[q / 3 % 3], x[q / 9]));
-          }
-        return rule;
-      }();
-      return result;
-    }
-
-    const Rule &
-    fine_rule()
-    {
-      static const Rule result = [] {
-        const auto &x = fine_gauss_abscissae();
-        Rule        rule;
-        for (unsigned int q = 0; q < 125; ++q)
-          {
-            rule.weights.push_back(1.);
-            rule.gradients.push_back(gradients(x[q % 5], x[q / 5 % 5], x[q / 25]));
-          }
-        return rule;
-      }();
-      return result;
-    }
-
-
-    /** Adds h^2 stress : gradient of the functions, summed over the points times `values`, to the loads of a cell's nodes. */
-    template <typename Values>
-    void
-    add_stress(const Rule &rule, const Values &values, const double h, const dealii::Tensor<2, 3> &stress, const unsigned int *const nodes, double *const loads)
-    {
+      const dealii::Tensor<2, 3> gradient = flow.gradient(corner);
+      CellArray                  result{};
       for (unsigned int a = 0; a < 27; ++a)
         {
-          dealii::Tensor<1, 3> sum;
-          for (unsigned int q = 0; q < rule.weights.size(); ++q)
-            sum += rule.weights[q] * values(q) * rule.gradients[q][a];
+          const dealii::Tensor<1, 3> offset = 0.5 * h * dealii::Point<3>(a % 3, a / 3 % 3, a / 9),
+                                     value  = (gradient + 0.5 * (flow.quadratic * offset)) * offset;
           for (unsigned int c = 0; c < 3; ++c)
-            loads[4 * std::size_t(nodes[a]) + c] += h * h * (stress[c] * sum);
+            result[4 * a + c] = value[c];
         }
+      return result;
     }
   } // namespace
 
@@ -109,40 +49,44 @@ namespace tanktread
   {
     if (at_points_.size() % 27 != 0)
       throw std::invalid_argument("A viscosity needs 27 numbers a cell.");
+    constexpr double weight[3] = {5. / 18, 8. / 18, 5. / 18};
     for (std::size_t i = 0; i < at_points_.size(); ++i)
-      means_[i / 27] += coarse_rule().weights[i % 27] * at_points_[i];
+      means_[i / 27] += weight[i % 3] * weight[i / 3 % 3] * weight[i % 27 / 9] * at_points_[i];
     for (std::size_t i = 0; i < cut_.cells.size(); ++i)
       means_[cut_.cells[i]] += std::accumulate(&cut_.weights[125 * i], &cut_.weights[125 * i] + 125, 0.);
   }
 
 
   void
-  Viscosity::add_excess_stress(const TaylorHoodSpace &space, const dealii::Tensor<2, 3> &gradient, FluidVector &y) const
+  Viscosity::add_excess_stress(const TaylorHoodSpace &space, const UndisturbedFlow &flow, FluidVector &y) const
   {
-    const NodeSpace              &nodes  = *space.velocity;
-    const dealii::Tensor<2, 3>    stress = gradient + transpose(gradient);
+    const NodeSpace              &nodes        = *space.velocity;
+    const std::vector<double>     corners      = lower_corners(space);
+    const InstructionSet          instructions = best_instruction_set();
     dealii::AlignedVector<double> loads(nodes.full_size());
-    std::fill(loads.begin(), loads.end(), 0.);
+    std::array<unsigned int, 27>  own_nodes;
+    std::iota(own_nodes.begin(), own_nodes.end(), 0);
+    // The strain form of the flow cell by cell, since nodes that periodic copies share cannot hold it.
+    const auto add = [&](const unsigned int cell, const auto &kernel, const double *const viscosity) {
+      const double *const corner = &corners[3 * std::size_t(cell)];
+      const double        h      = nodes.cell_sizes()[cell];
+      const CellArray     values = nodal_values(flow, {corner[0], corner[1], corner[2]}, h);
+      CellArray           load{};
+      kernel(instructions, Cubes{1, &h, own_nodes.data(), nullptr}, viscosity, values.data(), load.data());
+      for (unsigned int a = 0; a < 27; ++a)
+        for (unsigned int c = 0; c < 3; ++c)
+          loads[4 * std::size_t(nodes.cell_nodes(cell)[a]) + c] += load[4 * a + c];
+    };
+    std::array<double, 27> excess;
     for (unsigned int cell = 0; cell < nodes.n_cells(); ++cell)
       {
         const double *const mu = &at_points_[27 * std::size_t(cell)];
-        if (std::any_of(mu, mu + 27, [](const double value) { return value != 1.; }))
-          add_stress(
-            coarse_rule(),
-            [&](const unsigned int q) { return mu[q] - 1.; },
-            nodes.cell_sizes()[cell],
-            stress,
-            nodes.cell_nodes(cell),
-            loads.data());
+        std::transform(mu, mu + 27, excess.begin(), [](const double value) { return value - 1.; });
+        if (std::any_of(excess.begin(), excess.end(), [](const double value) { return value != 0.; }))
+          add(cell, add_viscous<double>, excess.data());
       }
     for (std::size_t i = 0; i < cut_.cells.size(); ++i)
-      add_stress(
-        fine_rule(),
-        [&](const unsigned int q) { return cut_.weights[125 * i + q]; },
-        nodes.cell_sizes()[cut_.cells[i]],
-        stress,
-        nodes.cell_nodes(cut_.cells[i]),
-        loads.data());
+      add(cut_.cells[i], add_weighted_viscous<double>, &cut_.weights[125 * i]);
     nodes.collect(loads.data());
     nodes.store(loads.data(), y, true);
   }

@@ -60,7 +60,7 @@ namespace tanktread
     coupling_.attach(fluid.space());
     memory_.viscosity_x.clear();
     if (has_inertia())
-      inertia_ = std::make_unique<Inertia>(fluid.space(), liquids_.reynolds_number, flow_.linear[0][2]);
+      inertia_ = std::make_unique<Inertia>(fluid.space(), liquids_.reynolds_number, flow_);
   }
 
 
@@ -72,6 +72,7 @@ namespace tanktread
       return;
     if (step.uhat == nullptr)
       throw std::logic_error("TimeLevel: a step with inertia needs uhat.");
+    inertia_->set_flow(flow_);
     inertia_->begin_step(*step.uhat, step.tau);
     fluid_->set_shift(inertia_->mass());
   }
@@ -105,7 +106,7 @@ namespace tanktread
     memory_.viscosity_x = positions(state);
     fluid_->set_viscosity(coupling_.viscosity(*shells(state)[0]));
     undisturbed_load_.reinit(fluid_->space().velocity->partitioner());
-    fluid_->viscosity()->add_excess_stress(fluid_->space(), flow_.linear, undisturbed_load_);
+    fluid_->viscosity()->add_excess_stress(fluid_->space(), flow_, undisturbed_load_);
   }
 
 

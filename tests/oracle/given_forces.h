@@ -144,7 +144,7 @@ namespace tanktread::oracle
         for (unsigned int d = 0; d < 3; ++d)
           gradient[c][d] = contrast.flow_gradient(c, d);
       undisturbed_load.reinit(fluid.space().velocity->partitioner());
-      fluid.viscosity()->add_excess_stress(fluid.space(), gradient, undisturbed_load);
+      fluid.viscosity()->add_excess_stress(fluid.space(), linear_flow(gradient), undisturbed_load);
     }
   };
 

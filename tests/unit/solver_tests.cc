@@ -207,7 +207,7 @@ TEST(ImplicitShell, IsKeptWhileItServes)
   ImplicitShell implicit_shell(MPI_COMM_WORLD);
   const auto   &Z = scene.coupling.mass();
   EXPECT_FALSE(implicit_shell.serves(0.1));
-  const Eigen::Matrix3d g = UndisturbedFlow{3.}.gradient();
+  const Eigen::Matrix3d g = ShearFlow{3.}.gradient();
   const SparseMatrix    K = random_blocks(scene.surface, 1e-3);
   implicit_shell.renew(Z, g, K, 0.1);
   for (const auto &[tau, serves] : {std::pair<double, bool>{0.1, true}, {0.149, true}, {0.151, false}, {0.067, true}, {0.066, false}})

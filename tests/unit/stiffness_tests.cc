@@ -80,18 +80,18 @@ namespace
       solver.solve_flow(state);
     }
 
-    SolverParameters      parameters;
-    const UndisturbedFlow flow{1.};
-    FittedShape           shape;
-    SubdivisionSurface    surface;
-    Shell                 serial_shell;
-    DistributedShell      shell;
-    Coupling              coupling;
-    double                volume;
-    Fluid                 fluid;
-    Timings               timings;
-    NewtonSolver          solver;
-    State                 state;
+    SolverParameters   parameters;
+    const ShearFlow    flow{1.};
+    FittedShape        shape;
+    SubdivisionSurface surface;
+    Shell              serial_shell;
+    DistributedShell   shell;
+    Coupling           coupling;
+    double             volume;
+    Fluid              fluid;
+    Timings            timings;
+    NewtonSolver       solver;
+    State              state;
   };
 
   /** Right-hand side with all blocks. */

@@ -6,6 +6,8 @@
 
 namespace tanktread
 {
+  struct UndisturbedFlow;
+
   /** Which vector instructions a kernel uses; the results agree to rounding. */
   enum class InstructionSet
   {
@@ -87,28 +89,36 @@ namespace tanktread
   void
   add_viscous_stokes(InstructionSet set, const Cubes &cubes, const Number *viscosity, Number least, const Number *u, const Number *p, Number *y_u, Number *y_p);
 
-  /** Factors of the terms of inertia, and the shear rate of the undisturbed flow (shear_rate z, 0, 0), which no array could hold at both walls. */
+  /** Factors of the terms of inertia. */
   template <typename Number>
   struct InertiaCoefficients
   {
-    Number mass, convection, shear_rate;
+    Number mass, convection;
   };
 
   /**
-   * y += mass (u, v) + convection ((u_inf + u) . grad u + u . grad u_inf, v), by the 3 x 3 x 3 Gauss rule: the first term exactly.
+   * y += mass (u, v) + convection ((u_inf + u) . grad u + u . grad u_inf, v), by the 3 x 3 x 3 Gauss rule: the first term exactly. The undisturbed flow u_inf comes as the polynomial that it is: an array of nodes,
+   * where periodic copies are one, could not hold it.
    *
-   * @param lower_z one number a cube: z of its lower face.
+   * @param corners three numbers a cube, the coordinates of its lower corner.
    */
   template <typename Number>
   void
-  add_inertia(InstructionSet set, const Cubes &cubes, const double *lower_z, InertiaCoefficients<Number> factor, const Number *u, Number *y);
+  add_inertia(InstructionSet              set,
+              const Cubes                &cubes,
+              const double               *corners,
+              const UndisturbedFlow      &undisturbed,
+              InertiaCoefficients<Number> factor,
+              const Number               *u,
+              Number                     *y);
 
   /** The derivative at u: y += mass (du, v) + convection ((u_inf + u) . grad du + du . grad (u_inf + u), v). */
   template <typename Number>
   void
   add_inertia_derivative(InstructionSet              set,
                          const Cubes                &cubes,
-                         const double               *lower_z,
+                         const double               *corners,
+                         const UndisturbedFlow      &undisturbed,
                          InertiaCoefficients<Number> factor,
                          const Number               *u,
                          const Number               *du,

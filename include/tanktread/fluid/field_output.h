@@ -5,6 +5,7 @@
 #define tanktread_fluid_field_output_h
 
 #include <tanktread/fluid/taylor_hood_space.h>
+#include <tanktread/fluid/undisturbed_flow.h>
 
 #include <functional>
 #include <string>
@@ -12,7 +13,7 @@
 namespace tanktread
 {
   /**
-   * Writes velocity (disturbance plus (shear_rate z, 0, 0)), pressure (the continuous field plus `further_pressure` at each node) and the rank of each cell to `<folder>/<name>_<counter>.pvtu` and its VTU pieces; cells are
+   * Writes velocity (disturbance plus undisturbed flow), pressure (the continuous field plus `further_pressure` at each node) and the rank of each cell to `<folder>/<name>_<counter>.pvtu` and its VTU pieces; cells are
    * drawn with their quadratic velocity as 2 x 2 x 2 linear ones.
    *
    * @param further_pressure function of position, not smooth in general: that of the capsule's interior. @param fields as in State::fluid. Collective. @return name of the PVTU file, without the folder.
@@ -23,7 +24,7 @@ namespace tanktread
                      unsigned int                                           counter,
                      const TaylorHoodSpace                                 &space,
                      const FluidBlockVector                                &fields,
-                     double                                                 shear_rate,
+                     const UndisturbedFlow                                 &undisturbed,
                      const std::function<double(const dealii::Point<3> &)> &further_pressure);
 } // namespace tanktread
 

@@ -6,12 +6,13 @@
 
 #include <tanktread/fluid/cube_kernel.h>
 #include <tanktread/fluid/taylor_hood_space.h>
+#include <tanktread/fluid/undisturbed_flow.h>
 
 namespace tanktread
 {
   /**
-   * Re ((u - uhat) / tau + (u_inf + u) . grad u + u . grad u_inf, v) for the disturbance u of the undisturbed flow u_inf = (shear_rate z, 0, 0), which solves the Navier-Stokes
-   * equations by itself. uhat and tau carry the time scheme, as for the positions of the shell: u_n and dt for backward Euler.
+   * Re ((u - uhat) / tau + (u_inf + u) . grad u + u . grad u_inf, v) for the disturbance u of the undisturbed flow u_inf, which solves the Navier-Stokes equations by itself, with a force per
+   * volume if need be: its own inertia is not among the terms, du_inf/dt neither. uhat and tau carry the time scheme, as for the positions of the shell: u_n and dt for backward Euler.
    *
    * Nothing is assembled; the integrals are those of the 3 x 3 x 3 Gauss rule on each cell. All calls are collective.
    */
@@ -19,7 +20,11 @@ namespace tanktread
   {
   public:
     /** Keeps `space` by reference. `reynolds_number` is the density in the scene's units. */
-    Inertia(const TaylorHoodSpace &space, double reynolds_number, double shear_rate);
+    Inertia(const TaylorHoodSpace &space, double reynolds_number, const UndisturbedFlow &undisturbed);
+
+    /** The undisturbed flow from now on: where it changes in time, that at the end of the step, set before begin_step(). */
+    void
+    set_flow(const UndisturbedFlow &undisturbed);
 
     /** The step to come: u = uhat + tau du/dt. `uhat` is the velocity block of a fluid vector. */
     void
@@ -54,9 +59,10 @@ namespace tanktread
 
     const TaylorHoodSpace                &space_;
     const InstructionSet                  instructions_;
-    const double                          reynolds_number_, shear_rate_;
+    const double                          reynolds_number_;
+    UndisturbedFlow                       undisturbed_;
     double                                mass_ = 0.;
-    std::vector<double>                   lower_z_;      // of each cell
+    const std::vector<double>             corners_;      // see lower_corners()
     FluidVector                           history_;      // mass() (uhat, v)
     mutable dealii::AlignedVector<double> flow_, u_, y_; // full arrays
   };

@@ -49,6 +49,10 @@ namespace tanktread
   /** The cells of a pair of spaces for the kernels. */
   Cubes
   cubes(const TaylorHoodSpace &space);
+
+  /** Their lower corners, three numbers each. */
+  std::vector<double>
+  lower_corners(const TaylorHoodSpace &space);
 } // namespace tanktread
 
 #endif

@@ -32,6 +32,10 @@ namespace tanktread
 
     bool
     is_zero() const;
+
+    /** Or constant: its gradient is the same everywhere. */
+    bool
+    is_linear() const;
   };
 
   /** Every velocity times `factor`. */

@@ -6,6 +6,7 @@
 
 #include <tanktread/fluid/cut_cell.h>
 #include <tanktread/fluid/taylor_hood_space.h>
+#include <tanktread/fluid/undisturbed_flow.h>
 
 #include <array>
 #include <vector>
@@ -56,12 +57,11 @@ namespace tanktread
     }
 
     /**
-     * y += 2 ((viscosity - 1) eps, eps(v)) for a constant strain rate eps: what the viscosity adds to the load of a linear flow that the velocities are disturbances of.
-     *
-     * @param gradient of that flow, entry (c, d) being du_c/dx_d. Collective.
+     * y += 2 ((viscosity - 1) eps(u_inf), eps(v)): what the viscosity adds to the load of the flow that the velocities are disturbances of. Its strain rate is linear in space, for which the rules are exact where the
+     * viscosity is constant. Collective.
      */
     void
-    add_excess_stress(const TaylorHoodSpace &space, const dealii::Tensor<2, 3> &gradient, FluidVector &y) const;
+    add_excess_stress(const TaylorHoodSpace &space, const UndisturbedFlow &flow, FluidVector &y) const;
 
   private:
     std::vector<double> at_points_, means_;
