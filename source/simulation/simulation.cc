@@ -93,7 +93,11 @@ namespace tanktread
     , log_(first_rank_)
     , shape_(make_capsule(parameters.capsule, parameters.shell_mesh.level))
     , surface_(shape_.topology, triangle_quadrature(parameters.shell_mesh.quadrature), derivatives_needed(parameters))
-    , shell_(surface_, parameters.shell, {parameters.scene.surface_young_modulus(), parameters.scene.bending_modulus()}, shape_.control_points)
+    , shell_(surface_,
+             parameters.shell,
+             {parameters.scene.surface_young_modulus(), parameters.scene.bending_modulus()},
+             make_stress_free_shape(parameters.capsule, shape_),
+             shape_.control_points)
     , distributed_shell_(shell_, shape_.topology, communicator)
     , fluid_(communicator, parameters.scene.box_side, parameters.fluid_mesh, parameters.scene.reynolds_number > 0.)
     , coupling_surface_(make_coupling_surface(shape_, parameters.solver.interface, parameters.scene.viscosity_ratio, fluid_.mesh()))

@@ -168,13 +168,33 @@ namespace
     EXPECT_THROW(make_capsule(shape, 1), InputError);
   }
 
+  TEST(Capsule, SaysWhenTheShapeIsNotFound)
+  {
+    CapsuleShapeParameters shape;
+    shape.shape = Shape::ellipsoid;
+    shape.axes  = {{1e200, 1., 1.}}; // whose square is no number
+    try
+      {
+        make_capsule(shape, 1);
+        ADD_FAILURE() << "accepted";
+      }
+    catch (const NumericalError &error)
+      {
+        EXPECT_NE(std::string(error.what()).find("conjugate gradients"), std::string::npos) << error.what();
+      }
+  }
+
   TEST(Capsule, ParametersAreParsedAndChecked)
   {
     CapsuleShapeParameters   shape;
     dealii::ParameterHandler prm;
     shape.add_parameters(prm);
     prm.parse_input_from_string(
-      "subsection Capsule\nset Shape = ellipsoid\nset Axes = 3, 2, 1\nset Inclination = 0.25\nset Inclined axis = symmetry\nset Mesh file = a.off\nset Aspect ratio = 0.7\nend\n");
+      "subsection Capsule\nset Shape = ellipsoid\nset Axes = 3, 2, 1\nset Inclination = 0.25\nset Inclined axis = symmetry\nset Mesh file = a.off\nset Aspect ratio = 0.7\n"
+      "set Stress-free shape = oblate\nset Stress-free aspect ratio = 0.95\nset Prestress = 0.05\nend\n");
+    EXPECT_EQ(shape.stress_free, StressFreeShape::oblate);
+    EXPECT_EQ(shape.stress_free_aspect_ratio, 0.95);
+    EXPECT_EQ(shape.prestress, 0.05);
     EXPECT_EQ(shape.shape, Shape::ellipsoid);
     EXPECT_EQ(shape.axes, (std::array<double, 3>{{3., 2., 1.}}));
     EXPECT_EQ(shape.inclination, 0.25);
@@ -193,6 +213,96 @@ namespace
     shape.shape = Shape::file;
     shape.file  = "";
     EXPECT_THROW(shape.check(), InputError);
+  }
+
+  // ----------------------------------------------------------------------------------------------------------- stress-free shape
+
+  TEST(StressFreeShape, IsTheInitialOneUnlessAskedFor)
+  {
+    CapsuleShapeParameters shape;
+    shape.shape               = Shape::biconcave;
+    shape.inclination         = 0.2;
+    const FittedShape capsule = make_capsule(shape, 2);
+    EXPECT_EQ((make_stress_free_shape(shape, capsule) - capsule.control_points).norm(), 0.);
+    shape.prestress = 0.25;
+    EXPECT_LT((1.25 * make_stress_free_shape(shape, capsule) - capsule.control_points).norm(), 1e-14);
+  }
+
+  TEST(StressFreeShape, HasTheAreaAndTheAxisOfTheInitialOne)
+  {
+    for (const Shape kind : {Shape::biconcave, Shape::oblate})
+      for (const StressFreeShape rest : {StressFreeShape::sphere, StressFreeShape::oblate})
+        {
+          CapsuleShapeParameters shape;
+          shape.shape                      = kind;
+          shape.inclination                = 0.2;
+          shape.inclined_axis              = InclinedAxis::symmetry;
+          shape.stress_free                = rest;
+          shape.stress_free_aspect_ratio   = 0.8;
+          const FittedShape        capsule = make_capsule(shape, 3);
+          const SubdivisionSurface surface(capsule.topology, triangle_quadrature(12, 1), Derivatives::first);
+          const double             area = surface_area(surface, capsule.control_points);
+          const ControlPoints      x    = make_stress_free_shape(shape, capsule);
+          EXPECT_NEAR(surface_area(surface, x), area, 1e-12 * area);
+          const InertiaEllipsoid e = inertia_ellipsoid(surface, x);
+          EXPECT_LT(e.centroid.norm(), 1e-12);
+          const double ratio = rest == StressFreeShape::sphere ? 1. : 0.8;
+          EXPECT_NEAR(e.B / e.L, ratio, 1e-5);
+          EXPECT_NEAR(e.W / e.L, 1., 1e-5);
+          if (rest == StressFreeShape::oblate)
+            {
+              EXPECT_NEAR(e.inclination / M_PI, -0.3, 1e-5);
+            }
+          shape.prestress = 0.1;
+          EXPECT_NEAR(surface_area(surface, make_stress_free_shape(shape, capsule)), area / 1.21, 1e-12 * area);
+        }
+  }
+
+  TEST(StressFreeShape, HasTheSameMaterialPoints)
+  {
+    // The same spheroid twice; and a sphere whose points are those of the ellipsoid before it was stretched.
+    CapsuleShapeParameters shape;
+    shape.shape                    = Shape::oblate;
+    shape.aspect_ratio             = 0.6;
+    shape.inclination              = 0.15;
+    shape.stress_free              = StressFreeShape::oblate;
+    shape.stress_free_aspect_ratio = 0.6;
+    FittedShape capsule            = make_capsule(shape, 2);
+    EXPECT_LT((make_stress_free_shape(shape, capsule) - capsule.control_points).norm(), 1e-12);
+
+    shape                           = CapsuleShapeParameters();
+    shape.shape                     = Shape::ellipsoid;
+    shape.axes                      = {{3., 2., 1.}};
+    shape.stress_free               = StressFreeShape::sphere;
+    capsule                         = make_capsule(shape, 3);
+    const ControlPoints unstretched = capsule.control_points * Eigen::Vector3d(1. / 3., 0.5, 1.).asDiagonal();
+    const ControlPoints x           = make_stress_free_shape(shape, capsule);
+    EXPECT_LT((x.normalized() - unstretched.normalized()).norm(), 1e-12); // of matrices: up to one factor
+  }
+
+  TEST(StressFreeShape, IsChecked)
+  {
+    CapsuleShapeParameters shape;
+    for (const double prestress : {-0.5, 9.1, std::nan("")})
+      {
+        shape.prestress = prestress;
+        EXPECT_THROW(shape.check(), InputError);
+      }
+    shape.prestress   = 0.05;
+    shape.stress_free = StressFreeShape::oblate;
+    EXPECT_NO_THROW(shape.check());
+    for (const double ratio : {0., 1.1, std::nan("")})
+      {
+        shape.stress_free_aspect_ratio = ratio;
+        EXPECT_THROW(shape.check(), InputError);
+      }
+    shape.stress_free = StressFreeShape::sphere;
+    EXPECT_NO_THROW(shape.check());
+    shape.shape = Shape::file;
+    shape.file  = "a.off";
+    EXPECT_THROW(shape.check(), InputError);
+    shape.stress_free = StressFreeShape::initial;
+    EXPECT_NO_THROW(shape.check());
   }
 
   // ---------------------------------------------------------------------------------------------------------------------- contour
