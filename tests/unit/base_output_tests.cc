@@ -4,14 +4,19 @@
 #include <tanktread/base/csv_writer.h>
 #include <tanktread/base/exceptions.h>
 #include <tanktread/base/log.h>
+#include <tanktread/base/output_file.h>
 #include <tanktread/base/output_folder.h>
 #include <tanktread/base/timings.h>
 #include <tanktread/base/version.h>
 
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
+
 #include "temporary_folder.h"
 #include <cmath>
+#include <csignal>
+#include <functional>
 #include <thread>
 
 using namespace tanktread;
@@ -161,7 +166,7 @@ TEST(Log, FileHasEverythingAndOtherRanksNothing)
     silent.line("no");
     log.open(name);
     log.line("after");
-    EXPECT_THROW(Log(true, screen).open("/proc/no/log.txt"), InputError);
+    EXPECT_THROW(Log(true, screen).open("/proc/no/log.txt"), OutputError);
   }
   EXPECT_EQ(screen.str(), "before\nafter\n");
   EXPECT_EQ(contents(name), "before\nafter\n");
@@ -229,10 +234,108 @@ TEST(CsvWriter, RowsAreOnDiskAtOnceWithTenDigits)
 TEST(CsvWriter, FailsLoudly)
 {
   const TemporaryFolder temporary;
-  EXPECT_THROW(CsvWriter((temporary.path / "no/history.csv").string(), {"time"}), InputError);
+  EXPECT_THROW(CsvWriter((temporary.path / "no/history.csv").string(), {"time"}), OutputError);
   CsvWriter silent((temporary.path / "silent.csv").string(), {"time"}, false);
   silent.row({1.});
   EXPECT_FALSE(fs::exists(temporary.path / "silent.csv"));
+}
+
+// == Full disks ==
+
+namespace
+{
+  /** While it lives no file of this process grows beyond `n_bytes`, as on a disk that is full. */
+  class LimitedFiles
+  {
+  public:
+    explicit LimitedFiles(const rlim_t n_bytes)
+      : handler(std::signal(SIGXFSZ, SIG_IGN))
+    {
+      getrlimit(RLIMIT_FSIZE, &before);
+      const rlimit limited = {n_bytes, before.rlim_max};
+      setrlimit(RLIMIT_FSIZE, &limited);
+    }
+
+    ~LimitedFiles()
+    {
+      setrlimit(RLIMIT_FSIZE, &before);
+      std::signal(SIGXFSZ, handler);
+    }
+
+  private:
+    void (*handler)(int);
+    rlimit before;
+  };
+
+  std::string
+  output_error(const std::function<void()> &work)
+  {
+    try
+      {
+        work();
+      }
+    catch (const OutputError &error)
+      {
+        return error.what();
+      }
+    return "";
+  }
+} // namespace
+
+TEST(FullDisk, ATableKeepsItsWholeRows)
+{
+  const TemporaryFolder temporary;
+  const fs::path        name = temporary.path / "history.csv";
+  CsvWriter             table(name.string(), {"time", "D_xz"});
+  const LimitedFiles    limit(40);
+  table.row({0.1, 1. / 3.});
+  const std::string message = output_error([&] { table.row({0.2, 2. / 3.}); });
+  EXPECT_EQ(message, "cannot write \"" + name.string() + "\": File too large");
+  EXPECT_EQ(contents(name), "time,D_xz\n0.1,0.3333333333\n");
+}
+
+TEST(FullDisk, AFileThatIsReplacedStays)
+{
+  const TemporaryFolder temporary;
+  const fs::path        name = temporary.path / "series.pvd";
+  replace_file(name.string(), "old");
+  {
+    const LimitedFiles limit(40);
+    EXPECT_EQ(output_error([&] { replace_file(name.string(), std::string(100000, 'x')); }), "cannot write \"" + name.string() + "\": File too large");
+  }
+  EXPECT_EQ(contents(name), "old");
+  EXPECT_FALSE(fs::exists(name.string() + ".part"));
+  replace_file(name.string(), "new");
+  EXPECT_EQ(contents(name), "new");
+}
+
+TEST(FullDisk, TheLogGoesOnOnTheScreen)
+{
+  const TemporaryFolder temporary;
+  const std::string     name = (temporary.path / "log.txt").string();
+  std::ostringstream    screen;
+  Log                   log(true, screen);
+  log.open(name);
+  log.line("first");
+  {
+    const LimitedFiles limit(10);
+    log.line("second");
+    log.line("third");
+  }
+  EXPECT_EQ(screen.str(), "first\nsecond\ncannot write \"" + name + "\": File too large; from here on the log is on the screen only\nthird\n");
+  EXPECT_EQ(contents(name).rfind("first\n", 0), 0u);
+}
+
+TEST(FullDisk, TheDeviceThatIsAlwaysFull)
+{
+  if (!fs::exists("/dev/full"))
+    GTEST_SKIP() << "no /dev/full";
+  std::ostringstream screen;
+  Log                log(true, screen);
+  log.line("first");
+  const std::string wanted = "cannot write \"/dev/full\": No space left on device";
+  EXPECT_EQ(output_error([&] { log.open("/dev/full"); }), wanted);
+  EXPECT_EQ(output_error([] { CsvWriter("/dev/full", {"time"}); }), wanted);
 }
 
 TEST(Version, NamesProgramAndLibraries)
