@@ -80,6 +80,6 @@ namespace tanktread
            "\n"
            "A mesh file named in FILE.prm is looked for in the folder of FILE.prm; the folder for the output\n"
            "(Output/Directory) is made in the folder in which the program is started.\n"
-           "Exit codes: 0 done, 1 bad input, 2 the computation failed.\n";
+           "Exit codes: 0 done, 1 bad input, 2 the computation failed or could not be written.\n";
   }
 } // namespace tanktread

@@ -3,8 +3,12 @@
 
 #include <tanktread/base/csv_writer.h>
 #include <tanktread/base/exceptions.h>
+#include <tanktread/base/output_file.h>
 
+#include <cerrno>
 #include <cstdio>
+#include <filesystem>
+#include <system_error>
 
 namespace tanktread
 {
@@ -15,12 +19,12 @@ namespace tanktread
   {
     if (!active)
       return;
+    errno = 0;
     file.open(file_name);
+    std::string line;
     for (std::size_t i = 0; i < names.size(); ++i)
-      file << (i == 0 ? "" : ",") << names[i];
-    file << std::endl;
-    if (!file)
-      throw InputError("cannot write \"" + file_name + "\"");
+      line += (i == 0 ? "" : ",") + names[i];
+    write_line(line);
   }
 
   void
@@ -30,14 +34,29 @@ namespace tanktread
       throw std::logic_error(file_name + ": a row of " + std::to_string(values.size()) + " values for " + std::to_string(n_columns) + " columns");
     if (!active)
       return;
-    char text[40];
+    std::string line;
+    char        text[40];
     for (std::size_t i = 0; i < values.size(); ++i)
       {
-        std::snprintf(text, sizeof(text), "%.10g", values[i]);
-        file << (i == 0 ? "" : ",") << text;
+        std::snprintf(text, sizeof(text), i == 0 ? "%.10g" : ",%.10g", values[i]);
+        line += text;
       }
-    file << std::endl;
-    if (!file)
-      throw std::runtime_error("cannot write \"" + file_name + "\" (is the disk full?)");
+    write_line(line);
+  }
+
+  void
+  CsvWriter::write_line(const std::string &text)
+  {
+    errno = 0;
+    if (file << text << std::endl)
+      {
+        size += text.size() + 1;
+        return;
+      }
+    const int       error = errno;
+    std::error_code ignored;
+    file.close();
+    std::filesystem::resize_file(file_name, size, ignored);
+    throw OutputError(cannot_write(file_name, error));
   }
 } // namespace tanktread

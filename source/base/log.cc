@@ -3,9 +3,11 @@
 
 #include <tanktread/base/exceptions.h>
 #include <tanktread/base/log.h>
+#include <tanktread/base/output_file.h>
 #include <tanktread/base/timings.h>
 #include <tanktread/base/version.h>
 
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
@@ -79,10 +81,12 @@ namespace tanktread
   {
     if (!active)
       return;
+    errno = 0;
     file.open(file_name);
     if (!(file << before_open << std::flush))
-      throw InputError("cannot write the log file \"" + file_name + "\"");
+      throw OutputError(cannot_write(file_name, errno));
     before_open.clear();
+    name = file_name;
   }
 
   void
@@ -107,10 +111,14 @@ namespace tanktread
     if (!active)
       return;
     screen << text << std::endl;
-    if (file.is_open())
-      file << text << std::endl;
-    else
+    if (name.empty())
       before_open += text + "\n";
+    errno = 0;
+    if (file.is_open() && !(file << text << std::endl))
+      {
+        screen << cannot_write(name, errno) << "; from here on the log is on the screen only" << std::endl;
+        file.close();
+      }
   }
 
   void

@@ -13,9 +13,18 @@ namespace tanktread
 {
   namespace
   {
+    enum class Kind
+    {
+      none,
+      input,
+      numerical,
+      output,
+      unexpected
+    };
+
     struct Failure
     {
-      int         exit_code = 0;
+      Kind        kind = Kind::none;
       std::string message;
     };
 
@@ -28,19 +37,23 @@ namespace tanktread
         }
       catch (const InputError &error)
         {
-          return {1, error.what()};
+          return {Kind::input, error.what()};
         }
       catch (const NumericalError &error)
         {
-          return {2, error.what()};
+          return {Kind::numerical, error.what()};
+        }
+      catch (const OutputError &error)
+        {
+          return {Kind::output, error.what()};
         }
       catch (const std::exception &error)
         {
-          return {3, error.what()};
+          return {Kind::unexpected, error.what()};
         }
       catch (...)
         {
-          return {3, "unknown exception"};
+          return {Kind::unexpected, "unknown exception"};
         }
       return {};
     }
@@ -48,24 +61,31 @@ namespace tanktread
     void
     print(const Failure &failure, const std::string &who)
     {
-      const char *const kinds[] = {"", "bad input", "numerical failure", "unexpected error"};
-      std::cerr << "tanktread: " << kinds[failure.exit_code] << who << "\n" << failure.message << std::endl;
+      const char *const kinds[] = {"", "bad input", "numerical failure", "output failure", "unexpected error"};
+      std::cerr << "tanktread: " << kinds[static_cast<int>(failure.kind)] << who << "\n" << failure.message << std::endl;
     }
 
     /** Throws on all ranks what the failure of rank `root` says; nothing if that rank has not failed. */
     void
     throw_on_all_ranks(MPI_Comm communicator, const int root, Failure failure)
     {
-      int numbers[2] = {failure.exit_code, static_cast<int>(failure.message.size())};
+      int numbers[2] = {static_cast<int>(failure.kind), static_cast<int>(failure.message.size())};
       MPI_Bcast(numbers, 2, MPI_INT, root, communicator);
       failure.message.resize(numbers[1]);
       MPI_Bcast(&failure.message[0], numbers[1], MPI_CHAR, root, communicator);
-      if (numbers[0] == 1)
-        throw InputError(failure.message);
-      if (numbers[0] == 2)
-        throw NumericalError(failure.message);
-      if (numbers[0] != 0)
-        throw std::runtime_error(failure.message);
+      switch (static_cast<Kind>(numbers[0]))
+        {
+          case Kind::none:
+            return;
+          case Kind::input:
+            throw InputError(failure.message);
+          case Kind::numerical:
+            throw NumericalError(failure.message);
+          case Kind::output:
+            throw OutputError(failure.message);
+          case Kind::unexpected:
+            throw std::runtime_error(failure.message);
+        }
     }
   } // namespace
 
@@ -87,7 +107,7 @@ namespace tanktread
     MPI_Comm_rank(communicator, &rank);
     MPI_Comm_size(communicator, &n_ranks);
     const Failure failure = failure_of(work);
-    int           first   = failure.exit_code == 0 ? n_ranks : rank;
+    int           first   = failure.kind == Kind::none ? n_ranks : rank;
     MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, communicator);
     if (first < n_ranks)
       throw_on_all_ranks(communicator, first, failure);
@@ -133,7 +153,7 @@ namespace tanktread
     MPI_Comm_size(communicator, &n_ranks);
 
     const Failure failure   = failure_of(work);
-    const int     exit_code = failure.exit_code == 3 ? 2 : failure.exit_code;
+    const int     exit_code = failure.kind == Kind::none ? 0 : failure.kind == Kind::input ? 1 : 2;
     if (exit_code != 0)
       {
         const bool together = n_ranks == 1 || meeting.all_come(patience);

@@ -8,67 +8,6 @@
 
 namespace tanktread
 {
-  namespace
-  {
-    enum class Side : char
-    {
-      inside,
-      outside,
-      near // the shell: in a cell that contains points of it or touches one that does
-    };
-
-
-    /** Sides of all finest cells of the block about the shell. */
-    class Sides
-    {
-    public:
-      explicit Sides(const SurfaceDistance &distance)
-        : distance_(distance)
-        , sides_(distance.block().n_cells(), Side::inside)
-      {
-        for (const Lattice &cell : distance.cells_nearby())
-          sides_[distance.block().number(cell)] = Side::near;
-        fill_outside();
-      }
-
-      Side
-      at(const Lattice &cell) const
-      {
-        return distance_.block().contains(cell) ? sides_[distance_.block().number(cell)] : Side::outside;
-      }
-
-    private:
-      /** What can be reached from a corner of the block, which has a layer of cells that are not near, is outside. */
-      void
-      fill_outside()
-      {
-        const LatticeBlock  &block = distance_.block();
-        std::vector<Lattice> front{block.low};
-        sides_[block.number(block.low)] = Side::outside;
-        while (!front.empty())
-          {
-            const Lattice cell = front.back();
-            front.pop_back();
-            for (unsigned int d = 0; d < 3; ++d)
-              for (const int step : {-1, 1})
-                {
-                  Lattice other = cell;
-                  other[d] += step;
-                  if (block.contains(other) && sides_[block.number(other)] == Side::inside)
-                    {
-                      sides_[block.number(other)] = Side::outside;
-                      front.push_back(other);
-                    }
-                }
-          }
-      }
-
-      const SurfaceDistance &distance_;
-      std::vector<Side>      sides_;
-    };
-  } // namespace
-
-
   ShellViscosity::ShellViscosity(const TaylorHoodSpace &space)
     : space_(space)
   {
@@ -76,10 +15,10 @@ namespace tanktread
     for (const auto &cell : mesh.triangulation().active_cell_iterators())
       if (cell->is_locally_owned())
         {
-          const int size     = 1 << (mesh.finest_level() - cell->level());
-          Lattice   position = mesh.key(cell).position;
-          for (int &i : position)
-            i *= size;
+          const int size = 1 << (mesh.finest_level() - cell->level());
+          Lattice   position;
+          for (unsigned int d = 0; d < 3; ++d)
+            position[d] = std::int64_t(size) * mesh.key(cell).position[d];
           cells_.push_back({position, size});
         }
   }
@@ -88,17 +27,17 @@ namespace tanktread
   Viscosity
   ShellViscosity::operator()(const SurfaceDistance &distance, const double ratio) const
   {
-    const double        least = std::min(1., ratio);
-    const Sides         sides(distance);
-    CutCells            cut;
-    const LatticeBlock &block = distance.block();
-    const Lattice       n     = space_.mesh.n_cubes(space_.mesh.finest_level());
-    const NodeSpace    &nodes = *space_.velocity;
-    // The image of a cell that may lie in the block.
+    const double       least = std::min(1., ratio);
+    const CellSides    sides(distance.runs_nearby());
+    CutCells           cut;
+    const Lattice     &low   = distance.low();
+    const auto         n     = space_.mesh.n_cubes(space_.mesh.finest_level());
+    const NodeSpace   &nodes = *space_.velocity;
+    // The image of a cell that may be near the shell or inside.
     const auto image = [&](Lattice cell) {
       for (unsigned int d = 0; d < 3; ++d)
         if (space_.mesh.box().is_periodic(d))
-          cell[d] = block.low[d] + ((cell[d] - block.low[d]) % n[d] + n[d]) % n[d];
+          cell[d] = low[d] + ((cell[d] - low[d]) % n[d] + n[d]) % n[d];
       return cell;
     };
     std::vector<double> phi(nodes.n_local(), std::nan("")), mu(27 * cells_.size(), 1.);

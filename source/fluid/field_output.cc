@@ -1,13 +1,20 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: the fluid's fields as VTU.
 
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/utilities.h>
+
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_system.h>
 #include <deal.II/fe/fe_tools.h>
 #include <deal.II/numerics/data_out.h>
 
+#include <tanktread/base/mpi_errors.h>
+#include <tanktread/base/output_file.h>
 #include <tanktread/fluid/field_output.h>
+
+#include <sstream>
 
 namespace tanktread
 {
@@ -122,6 +129,21 @@ namespace tanktread
     dealii::DataOutBase::VtkFlags flags;
     flags.compression_level = decltype(flags.compression_level)::best_speed; // the default spends more time than the flow takes to compute
     output.set_flags(flags);
-    return output.write_vtu_with_pvtu_record(folder + "/", name, counter, space.mesh.communicator(), 5, 1);
+    // Not by deal.II's write_vtu_in_parallel(): MPI's files do not tell when the disk is full.
+    const MPI_Comm     communicator = space.mesh.communicator();
+    const std::string  stem         = name + "_" + dealii::Utilities::int_to_string(counter, 5);
+    const auto         piece        = [&](const unsigned int r) { return stem + "." + std::to_string(r) + ".vtu"; };
+    std::ostringstream text;
+    output.write_vtu(text);
+    on_all_ranks(communicator, [&] { replace_file(folder + "/" + piece(dealii::Utilities::MPI::this_mpi_process(communicator)), text.str()); });
+    on_first_rank(communicator, [&] {
+      std::vector<std::string> pieces;
+      for (unsigned int r = 0; r < dealii::Utilities::MPI::n_mpi_processes(communicator); ++r)
+        pieces.push_back(piece(r));
+      std::ostringstream record;
+      output.write_pvtu_record(record, pieces);
+      replace_file(folder + "/" + stem + ".pvtu", record.str());
+    });
+    return stem + ".pvtu";
   }
 } // namespace tanktread

@@ -26,7 +26,7 @@ namespace tanktread
                    const std::optional<ControlPoints> &stress_free)
     : shape_(std::move(shape))
     , surface_(shape_.topology, quadrature.mechanics, needed_derivatives(parameters, moduli))
-    , shell_(surface_, parameters, moduli, stress_free ? *stress_free : shape_.control_points)
+    , shell_(surface_, parameters, moduli, stress_free ? *stress_free : shape_.control_points, shape_.control_points)
     , coupling_surface_(shape_.topology, quadrature.coupling, quadrature.coupling_derivatives)
     , weights_(area_weights(coupling_surface_, shape_.control_points))
     , mass_(mass_matrix(coupling_surface_, weights_))

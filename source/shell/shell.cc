@@ -140,14 +140,18 @@ namespace tanktread
   } // namespace
 
 
-  Shell::Shell(const SubdivisionSurface &surface, const ShellParameters &parameters, const ShellModuli &moduli, const ControlPoints &reference)
+  Shell::Shell(const SubdivisionSurface &surface,
+               const ShellParameters    &parameters,
+               const ShellModuli        &moduli,
+               const ControlPoints      &stress_free,
+               const ControlPoints      &initial)
     : surface_(surface)
     , parameters_(parameters)
     , moduli_(moduli)
     , n_rows_(moduli.bending_modulus > 0. || parameters.thickness > 0. ? 5 : 2)
     , all_faces_(surface.n_faces())
     , reference_metric_(surface.n_points())
-    , reference_weights_(area_weights(surface, reference))
+    , reference_weights_(area_weights(surface, stress_free))
     , reference_curvature_(Eigen::VectorXd::Zero(surface.n_points()))
   {
     parameters.check();
@@ -156,21 +160,21 @@ namespace tanktread
       if (!(modulus >= 0.) || !std::isfinite(modulus))
         throw InputError("A modulus of the shell is " + std::to_string(modulus) + "; it must not be negative.");
 
-    const ControlPoints a_1 = surface.S_1() * reference, a_2 = surface.S_2() * reference;
+    const ControlPoints a_1 = surface.S_1() * stress_free, a_2 = surface.S_2() * stress_free;
     for (unsigned int q = 0; q < surface.n_points(); ++q)
       reference_metric_[q] = ReferenceMetric(Metric{a_1.row(q).squaredNorm(), a_1.row(q).dot(a_2.row(q)), a_2.row(q).squaredNorm()});
 
     if (moduli.bending_modulus > 0.)
-      set_reference_curvature(reference);
+      set_reference_curvature(initial.size() == 0 ? stress_free : initial);
     if (parameters.thickness > 0.)
-      set_thick_reference(reference);
+      set_thick_reference(stress_free);
   }
 
 
   void
-  Shell::set_reference_curvature(const ControlPoints &reference)
+  Shell::set_reference_curvature(const ControlPoints &initial)
   {
-    const Eigen::VectorXd curvature = mean_curvature(surface_, reference); // also makes sure that the surface has second derivatives
+    const Eigen::VectorXd curvature = mean_curvature(surface_, initial); // also makes sure that the surface has second derivatives
     if (parameters_.reference == ReferenceCurvature::initial)
       reference_curvature_ = curvature;
     else if (parameters_.reference == ReferenceCurvature::value)
@@ -179,15 +183,15 @@ namespace tanktread
 
 
   void
-  Shell::set_thick_reference(const ControlPoints &reference)
+  Shell::set_thick_reference(const ControlPoints &stress_free)
   {
     if (surface_.derivatives() != Derivatives::second)
       throw std::logic_error("A shell of finite thickness needs a surface with second derivatives.");
-    const ControlPoints rows[5] = {surface_.S_1() * reference,
-                                   surface_.S_2() * reference,
-                                   surface_.S_11() * reference,
-                                   surface_.S_12() * reference,
-                                   surface_.S_22() * reference};
+    const ControlPoints rows[5] = {surface_.S_1() * stress_free,
+                                   surface_.S_2() * stress_free,
+                                   surface_.S_11() * stress_free,
+                                   surface_.S_12() * stress_free,
+                                   surface_.S_22() * stress_free};
     for (unsigned int q = 0; q < surface_.n_points(); ++q)
       {
         SurfaceDerivatives y;

@@ -36,7 +36,7 @@ namespace tanktread
     prm.add_parameter("Thickness",
                       thickness,
                       "Thickness h of the undeformed shell in a; its resistance to bending comes on top of 'Reduced bending modulus' and is unstressed in the "
-                      "initial shape. 0: a membrane. With neo-Hookean only.",
+                      "stress-free shape. 0: a membrane. With neo-Hookean only.",
                       dealii::Patterns::Double(0.));
     prm.leave_subsection();
   }

@@ -24,6 +24,7 @@ namespace tanktread
       result.liquids.viscosity_ratio = parameters.scene.viscosity_ratio;
       result.liquids.reynolds_number = parameters.scene.reynolds_number;
       result.shape                   = make_capsule(parameters.capsule, std::min(parameters.shell_mesh.level, max_level));
+      result.stress_free             = make_stress_free_shape(parameters.capsule, result.shape);
       result.centres                 = parameters.placement.positions();
       result.shell                   = parameters.shell;
       result.moduli                  = {parameters.scene.surface_young_modulus(), parameters.scene.bending_modulus()};

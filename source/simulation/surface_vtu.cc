@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: the shell's surface as VTU files, and a time series of them as a PVD file.
 
-#include <tanktread/base/exceptions.h>
+#include <deal.II/base/data_out_base.h>
+#include <deal.II/base/utilities.h>
+
+#include <tanktread/base/output_file.h>
 #include <tanktread/simulation/surface_vtu.h>
 
-#include <algorithm>
 #include <cstdint>
-#include <cstdio>
-#include <fstream>
-#include <iomanip>
-#include <limits>
 #include <ostream>
 #include <sstream>
 #include <stdexcept>
@@ -18,46 +16,17 @@ namespace tanktread
 {
   namespace
   {
-    /** Writes beside `file` and renames, which POSIX does at once: a reader, or a kill, sees the old file or the new one. */
-    void
-    replace_file(const std::string &file, const std::string &content)
-    {
-      const std::string unfinished = file + ".part";
-      std::ofstream     out(unfinished, std::ios::binary);
-      out << content;
-      out.close();
-      if (!out || std::rename(unfinished.c_str(), file.c_str()) != 0)
-        throw InputError("Cannot write the file '" + file + "': check that its folder exists, may be written to and has space left.");
-    }
-
-    std::string
-    base64(const std::string &bytes)
-    {
-      static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-      std::string       text;
-      text.reserve((bytes.size() + 2) / 3 * 4);
-      for (std::size_t i = 0; i < bytes.size(); i += 3)
-        {
-          const std::size_t n     = std::min<std::size_t>(3, bytes.size() - i);
-          std::uint32_t     group = 0;
-          for (std::size_t k = 0; k < 3; ++k)
-            group = group << 8 | (k < n ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-          for (std::size_t k = 0; k < 4; ++k)
-            text += k <= n ? digits[group >> (18 - 6 * k) & 63u] : '=';
-        }
-      return text;
-    }
-
     /** One DataArray. VTK wants the number of bytes (header_type of the file) in front of them, both in one base64 text. */
     template <typename Number>
     void
     write_array(std::ostream &out, const std::string &type, const std::string &name, const std::size_t n_components, const Number *values, const std::size_t n)
     {
-      const std::uint64_t n_bytes = n * sizeof(Number);
-      std::string         bytes(reinterpret_cast<const char *>(&n_bytes), sizeof(n_bytes));
-      bytes.append(reinterpret_cast<const char *>(values), n_bytes);
-      out << "<DataArray type=\"" << type << "\" Name=\"" << name << "\" NumberOfComponents=\"" << n_components << "\" format=\"binary\">" << base64(bytes)
-          << "</DataArray>\n";
+      const std::uint64_t        n_bytes = n * sizeof(Number);
+      const auto                *head = reinterpret_cast<const unsigned char *>(&n_bytes), *body = reinterpret_cast<const unsigned char *>(values);
+      std::vector<unsigned char> bytes(head, head + sizeof(n_bytes));
+      bytes.insert(bytes.end(), body, body + n_bytes);
+      out << "<DataArray type=\"" << type << "\" Name=\"" << name << "\" NumberOfComponents=\"" << n_components << "\" format=\"binary\">"
+          << dealii::Utilities::encode_base64(bytes) << "</DataArray>\n";
     }
 
     void
@@ -135,12 +104,9 @@ namespace tanktread
   void
   PvdFile::add(const double time, const std::string &data_file)
   {
-    std::ostringstream entry;
-    entry << std::setprecision(std::numeric_limits<double>::digits10) << "<DataSet timestep=\"" << time << "\" group=\"\" part=\"0\" file=\"" << data_file
-          << "\"/>\n";
-    entries += entry.str();
-    replace_file(file,
-                 "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"" + std::string(byte_order()) + "\">\n<Collection>\n" +
-                   entries + "</Collection>\n</VTKFile>\n");
+    entries.emplace_back(time, data_file);
+    std::ostringstream out;
+    dealii::DataOutBase::write_pvd_record(out, entries);
+    replace_file(file, out.str());
   }
 } // namespace tanktread

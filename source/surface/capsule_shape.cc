@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Part of Tanktread: the initial shape of a capsule, from its parameters to control points.
+// Part of Tanktread: the initial and the stress-free shape of a capsule, from parameters to control points.
 
 #include <tanktread/base/enum_parameter.h>
 #include <tanktread/base/exceptions.h>
@@ -14,12 +14,21 @@
 #include <Eigen/SparseLU>
 
 #include <cmath>
+#include <sstream>
 #include <string>
 
 namespace tanktread
 {
   namespace
   {
+    std::string
+    number(const double value)
+    {
+      std::ostringstream text;
+      text << value;
+      return text.str();
+    }
+
     /** Where the shape has the material point that the unit sphere has at s; not yet scaled or turned. */
     Eigen::Vector3d
     shape_point(const CapsuleShapeParameters &parameters, const Eigen::Vector3d &s)
@@ -76,7 +85,11 @@ namespace tanktread
       const SparseMatrix                                                  mass = mass_matrix(surface, weights);
       Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower | Eigen::Upper> solver(mass);
       solver.setTolerance(1e-15);
-      return solver.solveWithGuess(surface.S().transpose() * wanted, x);
+      const ControlPoints result = solver.solveWithGuess(surface.S().transpose() * wanted, x);
+      if (solver.info() != Eigen::Success || !result.allFinite())
+        throw NumericalError("The control points of the capsule's shape were not found: conjugate gradients stopped at a relative residual of " +
+                             number(solver.error()) + " after " + std::to_string(solver.iterations()) + " iterations.");
+      return result;
     }
 
     ControlPoints
@@ -90,16 +103,24 @@ namespace tanktread
       if (solver.info() != Eigen::Success)
         throw InputError("No subdivision surface passes through the vertices of the mesh file.");
       const Eigen::MatrixXd columns = vertices, solution = solver.solve(columns); // SparseLU takes no matrices stored by rows
+      const double          error = (stencils * solution - columns).norm();
+      if (solver.info() != Eigen::Success || !(error <= 1e-9 * columns.norm()))
+        throw InputError("No subdivision surface passes through the vertices of the mesh file: the best one found misses them by " + number(error) + ".");
       return solution;
     }
 
-    /** Moves the centroid to the origin, scales to the volume 4 pi/3, turns +x towards +z by `angle`. */
-    void
-    normalise(const TriangleMesh &topology, const double angle, ControlPoints &x)
+    /** The surface that sizes are measured on. */
+    SubdivisionSurface
+    measured_surface(const TriangleMesh &topology)
     {
-      const SubdivisionSurface surface(topology, triangle_quadrature(12, 1), Derivatives::first);
+      return {topology, triangle_quadrature(12, 1), Derivatives::first};
+    }
+
+    /** Moves the centroid to the origin, turns +x towards +z by `angle`. */
+    void
+    place(const SubdivisionSurface &surface, const double angle, ControlPoints &x)
+    {
       x.rowwise() -= inertia_ellipsoid(surface, x).centroid.transpose();
-      x *= std::cbrt(4. * M_PI / 3. / enclosed_volume(surface, x));
       const Eigen::Matrix3d turn = Eigen::AngleAxisd(-angle, Eigen::Vector3d::UnitY()).toRotationMatrix();
       x                          = (x * turn.transpose()).eval();
     }
@@ -133,6 +154,20 @@ namespace tanktread
       {{"long", InclinedAxis::long_axis}, {"symmetry", InclinedAxis::symmetry}},
       "Which axis that is. long: the longer one of the cross-section with the plane y = 0. symmetry: the axis of revolution, the short one of an "
       "oblate spheroid or a biconcave disk. With a mesh file the x axis of the file (long) or its z axis (symmetry).");
+    add_enum_parameter(
+      prm,
+      "Stress-free shape",
+      stress_free,
+      {{"initial", StressFreeShape::initial}, {"sphere", StressFreeShape::sphere}, {"oblate", StressFreeShape::oblate}},
+      "Shape in which the membrane (or the shell of finite thickness) is free of stress: the initial one, or a sphere or an oblate spheroid of the same area.");
+    prm.add_parameter("Stress-free aspect ratio",
+                      stress_free_aspect_ratio,
+                      "Semi-axis of the stress-free oblate spheroid along its axis of symmetry over the other two.",
+                      Double(0.));
+    prm.add_parameter("Prestress",
+                      prestress,
+                      "Inflation alpha_p: the stress-free shape is smaller than described above by the factor 1/(1 + alpha_p). Negative: the membrane is "
+                      "compressed at first.");
     prm.add_parameter("Mesh file", file, "Closed triangle mesh (.off, .obj or .vtk) whose vertices lie on the surface of the capsule, for the shape 'file'.");
     prm.leave_subsection();
   }
@@ -154,6 +189,12 @@ namespace tanktread
         "Allowed: long");
     if (shape == Shape::file && file.empty())
       throw InputError("Capsule/Mesh file: the shape 'file' needs the name of a mesh file.");
+    if (shape == Shape::file && stress_free != StressFreeShape::initial)
+      throw InputError("Capsule/Stress-free shape: the points of a mesh file are not known on a sphere or spheroid; allowed with the shape 'file': initial.");
+    if (stress_free == StressFreeShape::oblate && !(stress_free_aspect_ratio > 0. && stress_free_aspect_ratio <= 1.))
+      throw InputError("Capsule/Stress-free aspect ratio: got " + number(stress_free_aspect_ratio) + "; an oblate spheroid has one in (0, 1].");
+    if (!(prestress > -0.5 && prestress <= 9.))
+      throw InputError("Capsule/Prestress: got " + number(prestress) + "; allowed: an inflation above -0.5 and up to 9.");
   }
 
 
@@ -180,8 +221,29 @@ namespace tanktread
         result.topology       = icosphere(level);
         result.control_points = fit_shape(parameters, result.topology);
       }
-    normalise(result.topology, parameters.turn(), result.control_points);
+    const SubdivisionSurface surface = measured_surface(result.topology);
+    place(surface, parameters.turn(), result.control_points);
+    result.control_points *= std::cbrt(4. * M_PI / 3. / enclosed_volume(surface, result.control_points));
     return result;
+  }
+
+
+  ControlPoints
+  make_stress_free_shape(const CapsuleShapeParameters &parameters, const FittedShape &initial)
+  {
+    parameters.check();
+    ControlPoints x = initial.control_points;
+    if (parameters.stress_free != StressFreeShape::initial)
+      {
+        CapsuleShapeParameters shape;
+        shape.shape                      = parameters.stress_free == StressFreeShape::sphere ? Shape::sphere : Shape::oblate;
+        shape.aspect_ratio               = parameters.stress_free_aspect_ratio;
+        x                                = fit_shape(shape, initial.topology);
+        const SubdivisionSurface surface = measured_surface(initial.topology);
+        place(surface, parameters.turn(), x);
+        x *= std::sqrt(surface_area(surface, initial.control_points) / surface_area(surface, x));
+      }
+    return x / (1. + parameters.prestress);
   }
 
 

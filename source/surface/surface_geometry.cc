@@ -17,19 +17,40 @@ namespace tanktread
 
     /** a_1 x a_2 at every point; a degenerate one throws. */
     ControlPoints
-    area_vectors(const SubdivisionSurface &surface, const ControlPoints &x)
+    area_vectors(const ControlPoints &a_1, const ControlPoints &a_2, const unsigned int n_points_per_face)
     {
-      const ControlPoints a_1 = surface.S_1() * x, a_2 = surface.S_2() * x;
-      ControlPoints       m(a_1.rows(), 3);
+      ControlPoints m(a_1.rows(), 3);
       for (Eigen::Index q = 0; q < m.rows(); ++q)
         {
           m.row(q)         = a_1.row(q).cross(a_2.row(q));
           const double det = m.row(q).squaredNorm();
           if (!(det > 0) || !std::isfinite(det))
-            throw NumericalError("The surface is degenerate in face " + std::to_string(q / surface.n_points_per_face()) + ".");
+            throw NumericalError("The surface is degenerate in face " + std::to_string(q / n_points_per_face) + ".");
         }
       return m;
     }
+
+    ControlPoints
+    area_vectors(const SubdivisionSurface &surface, const ControlPoints &x)
+    {
+      return area_vectors(surface.S_1() * x, surface.S_2() * x, surface.n_points_per_face());
+    }
+
+    /** The surface seen from the mean of its control points: X - xbar, a_1 and a_2 at every point. Without cancellation, however far from the origin it lies. */
+    struct CentredSurface
+    {
+      CentredSurface(const SubdivisionSurface &surface, const ControlPoints &x)
+        : mean(x.colwise().mean())
+      {
+        const ControlPoints y = x.rowwise() - mean;
+        X                     = surface.S() * y;
+        a_1                   = surface.S_1() * y;
+        a_2                   = surface.S_2() * y;
+      }
+
+      Eigen::RowVector3d mean;
+      ControlPoints      X, a_1, a_2;
+    };
 
     /** Coefficients of the first and second fundamental form at a point. */
     struct FundamentalForms
@@ -61,10 +82,10 @@ namespace tanktread
   double
   enclosed_volume(const SubdivisionSurface &surface, const ControlPoints &x)
   {
-    const ControlPoints X = surface.S() * x, a_1 = surface.S_1() * x, a_2 = surface.S_2() * x;
-    double              volume = 0;
-    for (Eigen::Index q = 0; q < X.rows(); ++q)
-      volume += surface.weights()[q] * X.row(q).dot(a_1.row(q).cross(a_2.row(q)));
+    const CentredSurface centred(surface, x);
+    double               volume = 0;
+    for (Eigen::Index q = 0; q < centred.X.rows(); ++q)
+      volume += surface.weights()[q] * centred.X.row(q).dot(centred.a_1.row(q).cross(centred.a_2.row(q)));
     return volume / 3.;
   }
 
@@ -79,19 +100,22 @@ namespace tanktread
   ControlPoints
   volume_gradient(const SubdivisionSurface &surface, const ControlPoints &x)
   {
-    // X . (a_1 x a_2) is linear in each factor, and invariant under cyclic exchange.
-    ControlPoints X = surface.S() * x, a_1 = surface.S_1() * x, a_2 = surface.S_2() * x;
-    for (Eigen::Index q = 0; q < X.rows(); ++q)
+    // (X - xbar) . (a_1 x a_2) is linear in each factor, and invariant under cyclic exchange.
+    CentredSurface     centred(surface, x);
+    Eigen::RowVector3d closure = Eigen::RowVector3d::Zero();
+    for (Eigen::Index q = 0; q < centred.X.rows(); ++q)
       {
         const double w     = surface.weights()[q] / 3.;
-        const Vector value = X.row(q), first = a_1.row(q), second = a_2.row(q);
-        X.row(q)   = w * first.cross(second);
-        a_1.row(q) = w * second.cross(value);
-        a_2.row(q) = w * value.cross(first);
+        const Vector value = centred.X.row(q), first = centred.a_1.row(q), second = centred.a_2.row(q);
+        centred.X.row(q)   = w * first.cross(second);
+        centred.a_1.row(q) = w * second.cross(value);
+        centred.a_2.row(q) = w * value.cross(first);
+        closure += centred.X.row(q);
       }
-    ControlPoints gradient = surface.S().transpose() * X;
-    gradient += surface.S_1().transpose() * a_1;
-    gradient += surface.S_2().transpose() * a_2;
+    ControlPoints gradient = surface.S().transpose() * centred.X;
+    gradient += surface.S_1().transpose() * centred.a_1;
+    gradient += surface.S_2().transpose() * centred.a_2;
+    gradient.rowwise() -= closure / double(x.rows()); // each point moves xbar
     return gradient;
   }
 
@@ -100,8 +124,8 @@ namespace tanktread
   volume_hessian(const SubdivisionSurface &surface, const ControlPoints &x)
   {
     // The entry of (I, c) and (J, d) is v_IJ . (e_c x e_d) with
-    // v_IJ = 1/3 sum_q w (N^I N^J,1 - N^I,1 N^J) a_2 + (N^I,1 N^J,2 - N^I,2 N^J,1) X + (N^I,2 N^J - N^I N^J,2) a_1.
-    const ControlPoints    X = surface.S() * x, a_1 = surface.S_1() * x, a_2 = surface.S_2() * x;
+    // v_IJ = 1/3 sum_q w (N^I N^J,1 - N^I,1 N^J) a_2 + (N^I,1 N^J,2 - N^I,2 N^J,1) (X - xbar) + (N^I,2 N^J - N^I N^J,2) a_1.
+    const CentredSurface   centred(surface, x);
     const AssemblyPattern &pattern = surface.pattern();
     SparseMatrix           hessian = pattern.block_matrix();
     double                *values  = hessian.valuePtr();
@@ -126,8 +150,8 @@ namespace tanktread
               {
                 const double *S = surface.stencils(q), *S_1 = S + n, *S_2 = S_1 + n;
                 v += (surface.weights()[q] / 3.) *
-                  ((S[i] * S_1[j] - S_1[i] * S[j]) * a_2.row(q) + (S_1[i] * S_2[j] - S_2[i] * S_1[j]) * X.row(q) +
-                   (S_2[i] * S[j] - S[i] * S_2[j]) * a_1.row(q));
+                  ((S[i] * S_1[j] - S_1[i] * S[j]) * centred.a_2.row(q) + (S_1[i] * S_2[j] - S_2[i] * S_1[j]) * centred.X.row(q) +
+                   (S_2[i] * S[j] - S[i] * S_2[j]) * centred.a_1.row(q));
               }
             add(f, i, j, v);
             add(f, j, i, -v);
@@ -171,22 +195,27 @@ namespace tanktread
   InertiaEllipsoid
   inertia_ellipsoid(const SubdivisionSurface &surface, const ControlPoints &x)
   {
-    // div x = 3, div(x_i x) = 4 x_i, div(x_i x_j x) = 5 x_i x_j.
-    const ControlPoints X = surface.S() * x, m = area_vectors(surface, x);
-    double              volume = 0;
-    Vector              first  = Vector::Zero();
-    Eigen::Matrix3d     second = Eigen::Matrix3d::Zero();
-    for (Eigen::Index q = 0; q < X.rows(); ++q)
+    // div r = 3, div(r_i r) = 4 r_i, div(r_i r_j r) = 5 r_i r_j: r from the mean of the control points, then from the centroid.
+    const CentredSurface centred(surface, x);
+    const ControlPoints  m      = area_vectors(centred.a_1, centred.a_2, surface.n_points_per_face());
+    double               volume = 0;
+    Vector               first  = Vector::Zero();
+    for (Eigen::Index q = 0; q < m.rows(); ++q)
       {
-        const Vector p    = X.row(q);
-        const double flux = surface.weights()[q] * p.dot(m.row(q));
+        const Vector r    = centred.X.row(q);
+        const double flux = surface.weights()[q] * r.dot(m.row(q));
         volume += flux / 3.;
-        first += flux / 4. * p;
-        second += flux / 5. * p * p.transpose();
+        first += flux / 4. * r;
+      }
+    const Vector    from_mean = first / volume;
+    Eigen::Matrix3d second    = Eigen::Matrix3d::Zero();
+    for (Eigen::Index q = 0; q < m.rows(); ++q)
+      {
+        const Vector r = Vector(centred.X.row(q)) - from_mean;
+        second += surface.weights()[q] * r.dot(m.row(q)) / 5. * r * r.transpose();
       }
     InertiaEllipsoid result;
-    result.centroid = first / volume;
-    second -= volume * result.centroid * result.centroid.transpose();
+    result.centroid = centred.mean.transpose() + from_mean;
 
     const double mean = (second(0, 0) + second(2, 2)) / 2., difference = (second(0, 0) - second(2, 2)) / 2.;
     const double radius     = std::hypot(difference, second(0, 2));

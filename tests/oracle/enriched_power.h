@@ -44,7 +44,8 @@ namespace tanktread::oracle
       for (const auto &cell : mesh.triangulation().active_cell_iterators())
         if (cell->is_locally_owned())
           {
-            if (const Lattice position = mesh.key(cell).position; cell->level() == int(mesh.finest_level()) && candidates.count(position))
+            const auto [i, j, k] = mesh.key(cell).position;
+            if (const Lattice position = {{i, j, k}}; cell->level() == int(mesh.finest_level()) && candidates.count(position))
               add_cell(position, index);
             ++index;
           }

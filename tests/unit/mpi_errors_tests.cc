@@ -37,6 +37,7 @@ TEST(MpiErrors, ExitCodesAndOneMessage)
   EXPECT_EQ(outcome([] {}), Outcome(0, ""));
   EXPECT_EQ(outcome([] { throw InputError("what"); }), Outcome(1, first ? "tanktread: bad input\nwhat\n" : ""));
   EXPECT_EQ(outcome([] { throw NumericalError("what"); }), Outcome(2, first ? "tanktread: numerical failure\nwhat\n" : ""));
+  EXPECT_EQ(outcome([] { throw OutputError("what"); }), Outcome(2, first ? "tanktread: output failure\nwhat\n" : ""));
   EXPECT_EQ(outcome([] { throw std::out_of_range("what"); }), Outcome(2, first ? "tanktread: unexpected error\nwhat\n" : ""));
   EXPECT_EQ(outcome([] { throw 1; }), Outcome(2, first ? "tanktread: unexpected error\nunknown exception\n" : ""));
 }
@@ -68,6 +69,7 @@ TEST(MpiErrors, ErrorOfTheFirstRankIsThrownOnAll)
   EXPECT_EQ(calls, this_rank() == 0 ? 1 : 0);
   EXPECT_THROW(on_first_rank(MPI_COMM_WORLD, [] { throw InputError("what"); }), InputError);
   EXPECT_THROW(on_first_rank(MPI_COMM_WORLD, [] { throw NumericalError("what"); }), NumericalError);
+  EXPECT_THROW(on_first_rank(MPI_COMM_WORLD, [] { throw OutputError("what"); }), OutputError);
   try
     {
       on_first_rank(MPI_COMM_WORLD, [] { throw std::out_of_range("a longer message"); });

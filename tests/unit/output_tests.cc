@@ -149,7 +149,7 @@ TEST_F(Output, VtuRefusesWhatDoesNotFit)
   EXPECT_THROW(write_surface_vtu(path("s.vtu"), x, octahedron_faces, {{"wide", Eigen::MatrixXd::Zero(6, 2)}}), std::invalid_argument);
   EXPECT_THROW(write_surface_vtu(path("s.vtu"), x, {{0, 1, 6}}, {}), std::invalid_argument);
   EXPECT_FALSE(std::filesystem::exists(path("s.vtu")));
-  EXPECT_THROW(write_surface_vtu(path("no_such_folder/s.vtu"), x, octahedron_faces, {}), InputError);
+  EXPECT_THROW(write_surface_vtu(path("no_such_folder/s.vtu"), x, octahedron_faces, {}), OutputError);
 }
 
 TEST_F(Output, PvdIsCompleteAfterEachEntry)
@@ -163,16 +163,16 @@ TEST_F(Output, PvdIsCompleteAfterEachEntry)
   const std::string second = content("capsule.pvd");
 
   for (const std::string &file : {first, second})
-    EXPECT_EQ(file.substr(file.size() - std::string("</Collection>\n</VTKFile>\n").size()), "</Collection>\n</VTKFile>\n");
+    EXPECT_EQ(file.substr(file.size() - std::string("</Collection>\n</VTKFile>\n").size()), "</Collection>\n</VTKFile>\n") << file;
   EXPECT_NE(first.find("<DataSet timestep=\"0\" group=\"\" part=\"0\" file=\"capsule_0000.vtu\"/>"), std::string::npos);
   EXPECT_EQ(first.find("capsule_0001"), std::string::npos);
   EXPECT_NE(second.find("capsule_0000.vtu"), std::string::npos);
   const std::size_t entry = second.find("<DataSet timestep=\"0.33");
   ASSERT_NE(entry, std::string::npos);
-  EXPECT_NEAR(std::stod(second.substr(entry + 19)), third, 1e-15);
+  EXPECT_NEAR(std::stod(second.substr(entry + 19)), third, 5e-13); // deal.II writes 12 digits
   for (const auto &left_over : std::filesystem::directory_iterator(folder))
     EXPECT_EQ(left_over.path().filename(), "capsule.pvd");
-  EXPECT_THROW(PvdFile(path("no_such_folder/c.pvd")).add(0, "c.vtu"), InputError);
+  EXPECT_THROW(PvdFile(path("no_such_folder/c.pvd")).add(0, "c.vtu"), OutputError);
 }
 
 

@@ -16,22 +16,26 @@ namespace tanktread
   public:
     /**
      * Starts `file_name` with the line of `names`. An inactive writer (on all ranks but the first) touches no file.
-     * @throws InputError when the file cannot be written.
+     * @throws OutputError when the file cannot be written.
      */
     CsvWriter(const std::string &file_name, const std::vector<std::string> &names, bool active = true);
 
     /**
      * Writes one row; `values` has one entry for each name.
-     * @throws std::logic_error for another number of values, std::runtime_error when writing fails (a full disk).
+     * @throws std::logic_error for another number of values, OutputError when writing fails (a full disk); the file then ends with the last whole row.
      */
     void
     row(const std::vector<double> &values);
 
   private:
+    void
+    write_line(const std::string &text);
+
     const bool        active;
     const std::string file_name;
     const std::size_t n_columns;
     std::ofstream     file;
+    std::streamoff    size = 0; // of the whole rows
   };
 } // namespace tanktread
 

@@ -57,7 +57,7 @@ namespace tanktread
     /** Writes to `screen`, which has to live longer than the log. */
     Log(bool active, std::ostream &screen);
 
-    /** From now on also writes to `file_name`. @throws InputError when it cannot be written. */
+    /** From now on also writes to `file_name`. @throws OutputError when it cannot be written; when that happens later the screen says so, and the run goes on. */
     void
     open(const std::string &file_name);
 
@@ -81,7 +81,7 @@ namespace tanktread
     const bool    active;
     std::ostream &screen;
     std::ofstream file;
-    std::string   before_open;
+    std::string   name, before_open; // of the file; what is to go into it
     unsigned int  n_steps = 0;
   };
 

@@ -4,54 +4,33 @@
 #ifndef tanktread_coupling_surface_distance_h
 #define tanktread_coupling_surface_distance_h
 
+#include <tanktread/coupling/cell_runs.h>
 #include <tanktread/fluid/fluid_mesh.h>
 #include <tanktread/surface/closest_point.h>
 
-#include <array>
+#include <vector>
 
 namespace tanktread
 {
-  /** Position of a finest cell, or twice that of a node, counted from the box's lower corner and not wrapped periodically. */
-  using Lattice = std::array<int, 3>;
-
-  /** The finest cells low[d] <= i_d < low[d] + size[d]. */
-  struct LatticeBlock
-  {
-    Lattice low, size;
-
-    bool
-    contains(const Lattice &cell) const
-    {
-      for (unsigned int d = 0; d < 3; ++d)
-        if (cell[d] < low[d] || cell[d] >= low[d] + size[d])
-          return false;
-      return true;
-    }
-    std::size_t
-    number(const Lattice &cell) const
-    {
-      return (std::size_t(cell[2] - low[2]) * size[1] + (cell[1] - low[1])) * size[0] + (cell[0] - low[0]);
-    }
-    std::size_t
-    n_cells() const
-    {
-      return std::size_t(size[0]) * size[1] * size[2];
-    }
-  };
-
   /**
-   * Sorts the surface's points into the finest cells of the mesh, so that those near a node are found without a search. Distances are those from the nearest of
-   * the points within the cells that are closer than two cells to the node, by its quadratic_patch; they depend on the points alone, not on the mesh or the
-   * ranks.
+   * Sorts the surface's points into the finest cells of the mesh, so that those near a node are found without a search. Distances are those from the nearest of the points
+   * within the cells that are at most one cell away from the node in each direction, by its quadratic_patch; they depend on the points alone, not on the mesh or the ranks.
+   *
+   * Memory goes with the points and the rows of cells along x that pass the capsule, not with the cells around it.
    */
   class SurfaceDistance
   {
   public:
+    /** Throws NumericalError when a point has no place: a coordinate that is not finite. */
     SurfaceDistance(const FluidMesh &mesh, std::vector<QuadraticPatch> patches);
 
-    /** All finest cells, whether or not they exist, that contain points or touch one that does. */
+    /** All finest cells, whether or not they exist, that contain points or touch one that does; in an order that depends on the points alone. */
     std::vector<Lattice>
     cells_nearby() const;
+
+    /** The same cells as a set. */
+    CellRuns
+    runs_nearby() const;
 
     /** Distance in a, positive outside, of the node at (i, j, k) h/2 from the lower corner of the box. Infinite if no point is near. */
     double
@@ -63,21 +42,35 @@ namespace tanktread
       return patches_;
     }
 
-    /** Of cells about all points, with two cells to spare. */
-    const LatticeBlock &
-    block() const
+    /** Lowest index of the cells nearby in each direction. */
+    const Lattice &
+    low() const
     {
-      return block_;
+      return low_;
     }
 
   private:
-    double                       h_;
-    Eigen::Vector3d              corner_; // the lower one of the box
-    std::vector<QuadraticPatch>  patches_;
-    LatticeBlock                 block_;
-    std::vector<unsigned int>    start_;            // of each cell's points in the next
-    std::vector<unsigned int>    order_;            // points, cell by cell
-    std::vector<Eigen::Vector3d> sorted_positions_; // in that order
+    /** A cell that contains points. */
+    struct Cell
+    {
+      std::int64_t x;
+      unsigned int start; // of its points in order_; they end where those of the next begin
+    };
+
+    /** Sorts points into cells, cells by z, y and x, points of a cell as they came. */
+    void
+    sort_points(const std::vector<Lattice> &cells);
+
+    double                                                    h_;
+    Eigen::Vector3d                                           corner_; // the lower one of the box
+    std::vector<QuadraticPatch>                               patches_;
+    Lattice                                                   low_;
+    std::int64_t                                              size_x_;    // of the cells nearby
+    LatticeRows                                               rows_;      // of the cells nearby
+    std::vector<unsigned int>                                 start_;     // of each row in the next
+    std::vector<Cell>                                         cells_;     // row by row, and one more for the end
+    std::vector<unsigned int>                                 order_;     // points, cell by cell
+    Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor> positions_; // of the points in that order
   };
 } // namespace tanktread
 

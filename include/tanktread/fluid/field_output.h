@@ -13,10 +13,13 @@
 namespace tanktread
 {
   /**
-   * Writes velocity (disturbance plus undisturbed flow), pressure (the continuous field plus `further_pressure` at each node) and the rank of each cell to `<folder>/<name>_<counter>.pvtu` and its VTU pieces; cells are
-   * drawn with their quadratic velocity as 2 x 2 x 2 linear ones.
+   * Writes velocity (disturbance plus undisturbed flow), pressure (the continuous field plus `further_pressure` at each node) and the rank of each cell to
+   * `<folder>/<name>_<counter>.pvtu` and a piece for each rank, `<name>_<counter>.<rank>.vtu`; cells are drawn with their quadratic velocity as 2 x 2 x 2 linear ones. Files
+   * appear under their names only when they are complete.
    *
-   * @param further_pressure function of position, not smooth in general: that of the capsule's interior. @param fields as in State::fluid. Collective. @return name of the PVTU file, without the folder.
+   * @param further_pressure function of position, not smooth in general: that of the capsule's interior. @param fields as in State::fluid. Collective.
+   * @return name of the PVTU file, without the folder.
+   * @throws OutputError on all ranks when a file cannot be written on one of them.
    */
   std::string
   write_fluid_fields(const std::string                                     &folder,

@@ -21,8 +21,8 @@ namespace tanktread
   };
 
   /**
-   * A closed elastic shell: a membrane, or a shell of finite thickness, whose undeformed state is `reference`, and Helfrich bending about a reference curvature.
-   * doc/theory.md, section 2.
+   * A closed elastic shell: a membrane, or a shell of finite thickness, which is undeformed in its stress-free shape, and Helfrich bending about a reference
+   * curvature. doc/theory.md, section 2.
    *
    * With a bending modulus and a thickness of zero nothing of bending is computed, and the surface needs first derivatives only. All sums run in a fixed order.
    */
@@ -31,10 +31,17 @@ namespace tanktread
   public:
     /**
      * Keeps `surface` by reference; it has to have first derivatives, and second ones if the bending modulus or the thickness is not zero (std::logic_error
-     * otherwise). Throws InputError on parameters that check() refuses, negative moduli or a thickness beyond the radii of curvature of the reference,
-     * NumericalError where the reference shape is degenerate.
+     * otherwise). Throws InputError on parameters that check() refuses, negative moduli or a thickness beyond the radii of curvature of the stress-free shape,
+     * NumericalError where a shape is degenerate.
+     *
+     * @param stress_free control points, NP x 3, in which the membrane has no tension and a thick shell neither tension nor moments
+     * @param initial     control points whose mean curvature ReferenceCurvature::initial means; empty: the same
      */
-    Shell(const SubdivisionSurface &surface, const ShellParameters &parameters, const ShellModuli &moduli, const ControlPoints &reference);
+    Shell(const SubdivisionSurface &surface,
+          const ShellParameters    &parameters,
+          const ShellModuli        &moduli,
+          const ControlPoints      &stress_free,
+          const ControlPoints      &initial = ControlPoints());
 
     struct Energy
     {
@@ -67,7 +74,7 @@ namespace tanktread
     force_and_tangent(const ControlPoints &x, const std::vector<unsigned int> &faces, ControlPoints &f, SparseMatrix &K, Tangent tangent = Tangent::exact)
       const;
 
-    /** Undeformed area that each quadrature point stands for, w_q sqrt(det abar) (length n_points). */
+    /** Area that each quadrature point stands for in the stress-free shape, w_q sqrt(det abar) (length n_points). */
     const Eigen::VectorXd &
     reference_weights() const
     {
@@ -90,10 +97,10 @@ namespace tanktread
     thick(const SurfaceDerivatives &y, const Metric &metric, unsigned int point, bool with_hessian) const;
 
     void
-    set_reference_curvature(const ControlPoints &reference);
+    set_reference_curvature(const ControlPoints &initial);
 
     void
-    set_thick_reference(const ControlPoints &reference);
+    set_thick_reference(const ControlPoints &stress_free);
 
     void
     load_face(unsigned int face, const ControlPoints &x, FaceBuffers &buffers) const;

@@ -19,7 +19,7 @@ namespace tanktread
     none // no membrane: the shell bends only
   };
 
-  /** Mean curvature at which bending costs nothing: zero, that of the initial shape at each material point, or one number. */
+  /** Mean curvature at which bending costs nothing: zero, that of the initial shape (not the stress-free one) at each material point, or one number. */
   enum class ReferenceCurvature
   {
     flat,

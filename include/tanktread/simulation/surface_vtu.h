@@ -20,7 +20,7 @@ namespace tanktread
    * @param positions    NP x 3, unit a: points on the limit surface (not the control points, which do not lie on it).
    * @param faces        vertex indices in 0 ... NP - 1, outward oriented.
    * @param point_fields name and values, NP x 1 (scalar) or NP x 3 (vector). Names are written as they are: no <, & or quotes.
-   * @throws std::invalid_argument for fields of another shape or indices out of range, InputError if the file cannot be written.
+   * @throws std::invalid_argument for fields of another shape or indices out of range, OutputError if the file cannot be written.
    */
   void
   write_surface_vtu(const std::string                                          &file,
@@ -29,7 +29,7 @@ namespace tanktread
                     const std::vector<std::pair<std::string, Eigen::MatrixXd>> &point_fields);
 
   /**
-   * A ParaView data file: the list of the times of a run and of the VTU or PVTU files that belong to them. The file on disk is replaced at each new entry,
+   * A ParaView data file: the list of the times of a run (12 digits) and of the VTU or PVTU files that belong to them. The file on disk is replaced at each new entry,
    * so a run that is killed leaves a readable series.
    */
   class PvdFile
@@ -38,13 +38,13 @@ namespace tanktread
     /** Nothing is written before the first entry. */
     explicit PvdFile(std::string file);
 
-    /** Appends an entry and rewrites the file. `data_file` is relative to the folder of the PVD file. Throws InputError if it cannot be written. */
+    /** Appends an entry and rewrites the file. `data_file` is relative to the folder of the PVD file. Throws OutputError if it cannot be written. */
     void
     add(double time, const std::string &data_file);
 
   private:
-    std::string file;
-    std::string entries;
+    std::string                                 file;
+    std::vector<std::pair<double, std::string>> entries; // time and data file
   };
 } // namespace tanktread
 

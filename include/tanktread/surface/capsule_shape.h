@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Part of Tanktread: the initial shape of a capsule, from its parameters to control points.
+// Part of Tanktread: the initial and the stress-free shape of a capsule, from parameters to control points.
 
 #ifndef tanktread_surface_capsule_shape_h
 #define tanktread_surface_capsule_shape_h
@@ -27,6 +27,14 @@ namespace tanktread
     file
   };
 
+  /** Shape of the shell free of stress, up to its size; see make_stress_free_shape(). */
+  enum class StressFreeShape
+  {
+    initial,
+    sphere,
+    oblate
+  };
+
   /** Which axis of the shape makes the angle `inclination` with the flow direction x. */
   enum class InclinedAxis
   {
@@ -35,7 +43,7 @@ namespace tanktread
   };
 
   /**
-   * The parameters of section "Capsule" that describe the initial shape.
+   * The parameters of section "Capsule" that describe the initial shape and the stress-free one.
    *
    * - ellipsoid: semi-axes in the ratio `axes` along x, y, z.
    * - oblate: spheroid with semi-axis b along z and a along x and y, `aspect_ratio` = b/a.
@@ -64,11 +72,15 @@ namespace tanktread
     InclinedAxis          inclined_axis = InclinedAxis::long_axis;
     std::string           file;
 
+    StressFreeShape stress_free              = StressFreeShape::initial;
+    double          stress_free_aspect_ratio = 0.9;
+    double          prestress                = 0.; // alpha_p: how much longer all lengths of the initial shape are than if it had not been inflated
+
     /** Declares the parameters in section "Capsule" of `prm`; parsing fills this object, which has to outlive `prm`. */
     void
     add_parameters(dealii::ParameterHandler &prm);
 
-    /** Throws InputError on values that make no shape, and on an axis to incline that the shape does not have. */
+    /** Throws InputError on values that make no shape, on an axis to incline that the shape does not have, and on a stress-free shape that has no material points. */
     void
     check() const;
 
@@ -87,10 +99,26 @@ namespace tanktread
   /**
    * Control points whose limit surface is the shape wanted: a least-squares fit of the analytic shape on icosphere(level), or, for Shape::file, the limit surface
    * that passes through the vertices (`level` is not used then). The enclosed volume is 4 pi/3 by a quadrature with 48 points a face
-   * (coarser rules see 1e-5 more or less at level 4, from the faces at extraordinary vertices), its centroid the origin. Throws InputError where check(), read_triangle_mesh() or check_closed_surface() do.
+   * (coarser rules see 1e-5 more or less at level 4, from the faces at extraordinary vertices), its centroid the origin. Throws InputError where check(), read_triangle_mesh() or check_closed_surface() do
+   * and where no surface passes through the vertices, NumericalError where the fit does not converge.
    */
   FittedShape
   make_capsule(const CapsuleShapeParameters &parameters, unsigned int level);
+
+  /**
+   * Control points of the shell free of stress, for `initial` = make_capsule(parameters, ...): the same material points, on the same control mesh.
+   *
+   * - initial: the initial shape.
+   * - sphere, oblate (a spheroid with `stress_free_aspect_ratio` = b/a): the material point at s on the unit sphere is where the map of that shape has it, the initial shape
+   *   where its own has it. The area is that of the initial shape, as in the literature on red cells, where the membrane hardly changes it; the axis of symmetry is that of
+   *   the initial shape, the centroid the origin.
+   *
+   * All of it is smaller by 1/(1 + prestress), about the origin: a capsule that was inflated to the initial shape.
+   *
+   * Throws InputError where check() does, NumericalError where the fit does not converge.
+   */
+  ControlPoints
+  make_stress_free_shape(const CapsuleShapeParameters &parameters, const FittedShape &initial);
 
   /** Limit positions of the vertices of a fitted shape, connected as its control mesh: what to draw. */
   TriangleMesh

@@ -11,7 +11,10 @@ namespace tanktread
   // In all functions x holds the control points, NP x 3. They throw NumericalError where the surface is degenerate (a_1 x a_2 = 0 or not finite), and
   // std::logic_error when the surface was built without the derivatives they need.
 
-  /** Enclosed volume by the divergence theorem, V = 1/3 sum_q w_q X . (a_1 x a_2). */
+  /**
+   * Enclosed volume by the divergence theorem, V = 1/3 sum_q w_q (X - xbar) . (a_1 x a_2), with xbar the mean of the control points: sum_q w_q a_1 x a_2, which
+   * vanishes but for the quadrature's error, would make V depend on the origin. V is homogeneous of degree 3, V(L x + b) = det(L) V(x) for linear L.
+   */
   double
   enclosed_volume(const SubdivisionSurface &surface, const ControlPoints &x);
 
@@ -19,11 +22,15 @@ namespace tanktread
   double
   surface_area(const SubdivisionSurface &surface, const ControlPoints &x);
 
-  /** dV/dx_I of the discrete volume above, NP x 3. */
+  /** dV/dx_I of the discrete volume above, that of xbar included, NP x 3. The rows sum to zero: a pressure exerts no net force. */
   ControlPoints
   volume_gradient(const SubdivisionSurface &surface, const ControlPoints &x);
 
-  /** Second derivatives of the discrete volume, 3 NP x 3 NP, symmetric. The pattern is that of AssemblyPattern::block_matrix(). */
+  /**
+   * Second derivatives of the discrete volume with xbar held fixed, 3 NP x 3 NP, symmetric; the pattern is that of AssemblyPattern::block_matrix(). What xbar adds,
+   * -(1 (x) G + G^T (x) 1)/(3 NP) with G the derivative of sum_q w_q a_1 x a_2, has no sparse pattern and is of the size of the quadrature's error: for displacements that
+   * keep xbar it is the same small force on all points.
+   */
   SparseMatrix
   volume_hessian(const SubdivisionSurface &surface, const ControlPoints &x);
 
@@ -58,7 +65,7 @@ namespace tanktread
 
   /**
    * The ellipsoid that has the same volume integral of r r^T (hence the same inertia tensor) and mass as the enclosed volume: semi-axis sqrt(5 M_i / V) for the
-   * second moment M_i about the centroid, all by surface integrals. L and B come from the x-z block of the tensor, W from its yy entry, so y is taken as a
+   * second moment M_i about the centroid, all by surface integrals with r from there. L and B come from the x-z block of the tensor, W from its yy entry, so y is taken as a
    * principal axis, as it is in a shear flow u = (z, 0, 0).
    */
   InertiaEllipsoid
