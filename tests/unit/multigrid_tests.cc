@@ -320,8 +320,8 @@ TEST(Multigrid, IterationsDependOnNeitherMeshNorRanks)
 
 TEST(Multigrid, IterationsInBricks)
 {
-  // For the velocities as in the cube. For Stokes they depend on the box, through the inf-sup constant, not on the mesh; where there are more, the last one may depend on the numbering (through the
-  // estimate of the largest eigenvalue).
+  // For the velocities as in the cube. For Stokes they depend on the box, through the inf-sup constant, not on the mesh; where there
+  // are more, the last one may depend on the numbering (through the estimate of the largest eigenvalue).
   struct Case
   {
     Box          box;
