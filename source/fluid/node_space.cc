@@ -2,11 +2,10 @@
 // Part of Tanktread: numbering of the free nodes of a continuous field, and what the other nodes follow from.
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/fe/fe_tools.h>
 
 #include <tanktread/base/exceptions.h>
+#include <tanktread/fluid/node_numbering.h>
 #include <tanktread/fluid/node_space.h>
-#include <tanktread/fluid/taylor_hood_space.h>
 
 #include <algorithm>
 #include <cmath>
@@ -20,26 +19,6 @@ namespace tanktread
 
   namespace
   {
-    constexpr unsigned int unknown = std::numeric_limits<unsigned int>::max();
-
-    /** Degrees of freedom of all locally owned cells, one cell after the other, each in lexicographic order. */
-    std::vector<Index>
-    lexicographic_dofs(const dealii::DoFHandler<3> &dofs)
-    {
-      const auto        &fe    = dofs.get_fe();
-      const auto         order = dealii::FETools::lexicographic_to_hierarchic_numbering<3>(fe.degree);
-      std::vector<Index> cell_dofs(fe.n_dofs_per_cell()), result;
-      for (const auto &cell : dofs.active_cell_iterators())
-        if (cell->is_locally_owned())
-          {
-            cell->get_dof_indices(cell_dofs);
-            for (const unsigned int i : order)
-              result.push_back(cell_dofs[i]);
-          }
-      return result;
-    }
-
-
     dealii::IndexSet
     with_components(const dealii::IndexSet &nodes, const unsigned int n_components)
     {
@@ -49,111 +28,6 @@ namespace tanktread
       result.compress();
       return result;
     }
-
-
-    /** Collects places in full arrays while the cells are walked through. */
-    class Numbering
-    {
-    public:
-      Numbering(const ScalarSpace &space, const std::vector<Index> &cell_dofs)
-        : constraints_(space.constraints())
-        , owned_dofs_(space.partitioner()->locally_owned_range())
-        , number_(space.partitioner())
-        , place_(space.partitioner()->locally_owned_size() + space.partitioner()->n_ghost_indices(), unknown)
-      {
-        number_owned(cell_dofs, space.partitioner()->get_mpi_communicator());
-        find_ghosts(cell_dofs);
-      }
-
-      Index first_owned = 0, n_global = 0;
-
-      std::vector<Index>             ghosts; // global numbers, sorted
-      std::vector<unsigned int>      row_start{0};
-      std::vector<NodeSpace::Master> masters;
-      unsigned int                   n_owned = 0;
-
-      /** Place of a degree of freedom, which gets a row of masters if it needs one; `unknown` for a wall node. */
-      unsigned int
-      place(const Index dof)
-      {
-        if (!constraints_.is_constrained(dof))
-          return free_place(dof);
-        const auto &entries = *constraints_.get_constraint_entries(dof);
-        if (entries.empty())
-          return unknown;
-        if (entries.size() == 1 && entries.front().second == 1.)
-          return free_place(entries.front().first);
-        unsigned int &result = place_[number_.get_partitioner()->global_to_local(dof)];
-        if (result == unknown)
-          {
-            result = n_owned + ghosts.size() + row_start.size() - 1;
-            for (const auto &[master, weight] : entries)
-              masters.push_back({free_place(master), static_cast<float>(weight)});
-            row_start.push_back(masters.size());
-          }
-        return result;
-      }
-
-    private:
-      /** Calls f(dof) for every free degree of freedom that the cells refer to, in the order in which they do. */
-      template <typename Function>
-      void
-      for_free_dofs(const std::vector<Index> &cell_dofs, const Function &f) const
-      {
-        for (const Index dof : cell_dofs)
-          if (!constraints_.is_constrained(dof))
-            f(dof);
-          else
-            for (const auto &entry : *constraints_.get_constraint_entries(dof))
-              f(entry.first);
-      }
-
-      void
-      number_owned(const std::vector<Index> &cell_dofs, const MPI_Comm communicator)
-      {
-        number_ = -1.; // global numbers, exact as doubles
-        // In its own cells every owned degree of freedom occurs; those seen through constraints only may belong to others.
-        for (const Index dof : cell_dofs)
-          if (!constraints_.is_constrained(dof) && owned_dofs_.is_element(dof))
-            {
-              unsigned int &p = place_[number_.get_partitioner()->global_to_local(dof)];
-              if (p == unknown)
-                p = n_owned++;
-            }
-        const Index n = n_owned;
-        n_global      = dealii::Utilities::MPI::sum(n, communicator);
-        MPI_Exscan(&n, &first_owned, 1, DEAL_II_DOF_INDEX_MPI_TYPE, MPI_SUM, communicator);
-        for (unsigned int i = 0; i < number_.locally_owned_size(); ++i)
-          if (place_[i] != unknown)
-            number_.local_element(i) = first_owned + place_[i];
-        number_.update_ghost_values();
-      }
-
-      void
-      find_ghosts(const std::vector<Index> &cell_dofs)
-      {
-        for_free_dofs(cell_dofs, [&](const Index dof) {
-          if (!owned_dofs_.is_element(dof))
-            ghosts.push_back(number_(dof));
-        });
-        std::sort(ghosts.begin(), ghosts.end());
-        ghosts.erase(std::unique(ghosts.begin(), ghosts.end()), ghosts.end());
-      }
-
-      unsigned int
-      free_place(const Index dof)
-      {
-        unsigned int &p = place_[number_.get_partitioner()->global_to_local(dof)];
-        if (p == unknown)
-          p = n_owned + (std::lower_bound(ghosts.begin(), ghosts.end(), Index(number_(dof))) - ghosts.begin());
-        return p;
-      }
-
-      const dealii::AffineConstraints<double> &constraints_;
-      const dealii::IndexSet                  &owned_dofs_;
-      FluidVector                              number_;
-      std::vector<unsigned int>                place_; // of local degrees of freedom
-    };
   } // namespace
 
 
@@ -169,7 +43,7 @@ namespace tanktread
       throw InputError("The fluid mesh has " + std::to_string(space.dofs().n_dofs()) + " nodes; allowed: at most " + std::to_string(most_nodes) +
                        ", which deal.II's integers can count four times (Fluid mesh/Finest cell).");
     const std::vector<Index> cell_dofs = lexicographic_dofs(space.dofs());
-    Numbering                numbering(space, cell_dofs);
+    NodeNumbering            numbering(space, cell_dofs);
     for (const auto &cell : space.dofs().active_cell_iterators())
       if (cell->is_locally_owned())
         cell_size_.push_back(cell->extent_in_direction(0));
@@ -183,7 +57,7 @@ namespace tanktread
     masters_           = std::move(numbering.masters);
     row_start_.push_back(masters_.size()); // the zero node
     n_local_ = first_constrained_ + row_start_.size() - 1;
-    std::replace(cell_nodes_.begin(), cell_nodes_.end(), unknown, n_local_ - 1);
+    std::replace(cell_nodes_.begin(), cell_nodes_.end(), NodeNumbering::unknown, n_local_ - 1);
 
     dealii::IndexSet owned(numbering.n_global), ghosts(numbering.n_global);
     owned.add_range(numbering.first_owned, numbering.first_owned + n_owned_);

@@ -65,7 +65,10 @@ namespace
     }
   };
 
-  /** Sums over the free nodes of velocities and of pressures times random weights of their places, divided by the norms of both: almost any change of the solution changes them. */
+  /**
+   * Sums over the free nodes of velocities and of pressures times random weights of their places, divided by the norms of both: almost any change of the
+   * solution changes them.
+   */
   std::array<double, 2>
   rough_functionals(const Problem &problem, const ComponentVector &solution, const unsigned int seed)
   {

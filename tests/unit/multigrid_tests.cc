@@ -276,14 +276,20 @@ TEST(Multigrid, MovesWithTheBandAcrossPeriodicFaces)
 
 namespace
 {
-  /** Iterations for velocities and for Stokes on a mesh, with all ranks and, if asked for, on each rank alone; those for Stokes are at most `stokes_allowed`. */
+  /** What is allowed for Stokes. */
+  struct Allowed
+  {
+    unsigned int iterations = 13, difference_between_ranks = 0;
+  };
+
+  /** Iterations for velocities and for Stokes on a mesh, with all ranks and, if asked for, on each rank alone. */
   void
-  expect_few_iterations(const Scene &scene, const bool alone_too, const unsigned int stokes_allowed = 13)
+  expect_few_iterations(const Scene &scene, const bool alone_too, const Allowed &allowed = {})
   {
     Ladder             ladder(MPI_COMM_WORLD, scene);
     const unsigned int laplace = solve_laplace(ladder, rough_vector(ladder), 1e-8).iterations, stokes = stokes_iterations(ladder);
     EXPECT_LE(laplace, 7u);
-    EXPECT_LE(stokes, stokes_allowed);
+    EXPECT_LE(stokes, allowed.iterations);
     if (is_root())
       std::cout << "box " << scene.box.side[0] << " x " << scene.box.side[1] << " x " << scene.box.side[2] << ", coarsest cell " << scene.coarsest
                 << ", finest " << scene.finest << ": " << ladder.mesh.triangulation().n_global_active_cells() << " cells, " << laplace
@@ -292,7 +298,7 @@ namespace
       {
         Ladder alone(MPI_COMM_SELF, scene);
         EXPECT_EQ(solve_laplace(alone, rough_vector(alone), 1e-8).iterations, laplace);
-        EXPECT_EQ(stokes_iterations(alone), stokes);
+        EXPECT_NEAR(stokes_iterations(alone), stokes, allowed.difference_between_ranks);
       }
   }
 } // namespace
@@ -314,7 +320,8 @@ TEST(Multigrid, IterationsDependOnNeitherMeshNorRanks)
 
 TEST(Multigrid, IterationsInBricks)
 {
-  // For the velocities as in the cube. For Stokes they depend on the box, through the inf-sup constant, not on the mesh.
+  // For the velocities as in the cube. For Stokes they depend on the box, through the inf-sup constant, not on the mesh; where there
+  // are more, the last one may depend on the numbering (through the estimate of the largest eigenvalue).
   struct Case
   {
     Box          box;
@@ -323,8 +330,8 @@ TEST(Multigrid, IterationsInBricks)
   for (const Case &c : {Case{closed_brick, 24}, {brick_along_z, 19}, {brick_along_yz, 14}})
     for (const Point &centre : {Point(0.1, 0.2, 0.3), Point(2.9, -4.9, 6.9)})
       for (const double finest : {1., 0.5, 0.25})
-        expect_few_iterations({c.box, 2., finest, oracle::sphere_points(centre, 1.)}, finest == 0.5, c.stokes_allowed);
+        expect_few_iterations({c.box, 2., finest, oracle::sphere_points(centre, 1.)}, finest == 0.5, {c.stokes_allowed, 1});
   // Long channels: rung 0 has 2 x 1 x 16 and 1 x 1 x 9 cells.
-  expect_few_iterations({{{{4., 2., 32.}}, {{Faces::periodic, Faces::prescribed, Faces::prescribed}}}, 2., 0.25, {Point(0.1, 0.3, 15.7)}}, true, 47);
-  expect_few_iterations({{{{4., 4., 36.}}, {{Faces::prescribed, Faces::prescribed, Faces::periodic}}}, 2., 0.5, {Point(1.9, 1.7, 17.9)}}, true, 37);
+  expect_few_iterations({{{{4., 2., 32.}}, {{Faces::periodic, Faces::prescribed, Faces::prescribed}}}, 2., 0.25, {Point(0.1, 0.3, 15.7)}}, true, {47, 1});
+  expect_few_iterations({{{{4., 4., 36.}}, {{Faces::prescribed, Faces::prescribed, Faces::periodic}}}, 2., 0.5, {Point(1.9, 1.7, 17.9)}}, true, {37, 1});
 }

@@ -183,7 +183,10 @@ namespace tanktread
     return {std::sqrt(dealii::Utilities::MPI::sum(eu, comm)), std::sqrt(ep)};
   }
 
-  /** Errors with cells of the sizes of `coarse_cells`, `levels_above_coarse` times halved at `band`, fall as third order for velocities and second order for pressures. */
+  /**
+   * Errors with cells of the sizes of `coarse_cells`, `levels_above_coarse` times halved at `band`, fall as third order for velocities and second order for
+   * pressures.
+   */
   template <typename Solution>
   void
   expect_orders(const Solution                      &exact,

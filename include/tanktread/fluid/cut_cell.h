@@ -4,6 +4,8 @@
 #ifndef tanktread_fluid_cut_cell_h
 #define tanktread_fluid_cut_cell_h
 
+#include <tanktread/fluid/cell_weights.h>
+
 #include <array>
 
 namespace tanktread
@@ -26,27 +28,12 @@ namespace tanktread
   whole_gradient_products();
 
   /**
-   * The part with phi < 0 of a level set given at the 27 nodes of the cube, in units of its edge.
-   *
-   * The eight half-size boxes are divided into six tetrahedra each, cut flat where phi changes its sign; the sliver between the flat cut and the zero of the quadratic phi is added as points on
-   * the cut of weight dA delta, delta = -phi / (grad phi . n), in the middle of the sliver. All points are then condensed into weights at 5 x 5 x 5 Gauss points that integrate
-   * polynomials of degree four along each axis as those points do, and the matrices are sums of products over these.
+   * The part with phi < 0 of a level set given at the 27 nodes of the cube, in units of its edge: sums over the points of inside_weights().
    *
    * @param products made too, unless null.
    */
   PartialCellMatrices
   inside_matrices(const std::array<double, 27> &phi, GradientProducts *products = nullptr);
-
-  /** Those weights at the 5 x 5 x 5 Gauss points, x fastest; of the whole cube and of the part with phi < 0. */
-  using CellWeights = std::array<double, 125>;
-  const CellWeights &
-  whole_weights();
-  CellWeights
-  inside_weights(const std::array<double, 27> &phi);
-
-  /** Coordinates of the Gauss points along each axis. */
-  const std::array<double, 5> &
-  fine_gauss_abscissae();
 } // namespace tanktread
 
 #endif
