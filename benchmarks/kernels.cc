@@ -67,8 +67,8 @@ namespace
    * the sum of the components, the factor and the sum over the cells. Its transpose: 2 and 6 a line.
    * Strain form: three nodes of a line to its three points take 10 for values, 11 for derivatives, and so does the transpose; 8 sweeps of 9 lines each way, 3 of them
    * derivatives; adding up two sweeps; at a point the factor, and sum and product for nine derivatives.
-   * Inertia: 9 sweeps for value and gradient of a field, 3 of them derivatives, and 3 back; at a point the wind, v . grad u, u . grad u_inf, mass and factors, as for a simple shear. Its derivative does all
-   * but the way back for two fields, and v . grad u twice.
+   * Inertia: 9 sweeps for value and gradient of a field, 3 of them derivatives, and 3 back; at a point the wind, v . grad u, u . grad u_inf, mass and factors,
+   * as for a simple shear. Its derivative does all but the way back for two fields, and v . grad u twice.
    */
   struct Operations
   {

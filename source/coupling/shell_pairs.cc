@@ -10,9 +10,9 @@ namespace tanktread
   namespace
   {
     /** A cut cell's nodes with what its forms are made of. */
-    struct Side
+    struct CutSide
     {
-      Side(const NodeDistances &nodes, const double h)
+      CutSide(const NodeDistances &nodes, const double h)
         : nodes(nodes)
         , q(node_amplitudes(nodes, 1.))
       {
@@ -37,7 +37,7 @@ namespace tanktread
 
 
     std::array<std::array<double, 8>, 8>
-    laplace_products(const Side &c, const Side &d)
+    laplace_products(const CutSide &c, const CutSide &d)
     {
       const PartialCellMatrices           &whole  = whole_cell_matrices();
       std::array<std::array<double, 8>, 8> result = {};
@@ -60,7 +60,7 @@ namespace tanktread
 
     /** [v][j]: (eta_d,j, grad psi_c,v) */
     std::array<std::array<std::array<float, 4>, 8>, 8>
-    mixed_products(const Side &c, const Side &d)
+    mixed_products(const CutSide &c, const CutSide &d)
     {
       const PartialCellMatrices                         &whole  = whole_cell_matrices();
       std::array<std::array<std::array<float, 4>, 8>, 8> result = {};
@@ -128,7 +128,7 @@ namespace tanktread
                        const JumpEnrichment::CutCell &cut_second)
   {
     const double h = space_->velocity->cell_sizes()[cut_first.cell];
-    const Side   c(cut_first.nodes, h), d(cut_second.nodes, h);
+    const CutSide   c(cut_first.nodes, h), d(cut_second.nodes, h);
     cells_.push_back({first, second, cut_first.cell, laplace_products(c, d), mixed_products(c, d), mixed_products(d, c)});
   }
 

@@ -28,7 +28,10 @@ namespace
 {
   using Point = dealii::Point<3>;
 
-  /** The numbers of the first data array whose tag contains `attribute`: base64 of a head (number of blocks, size of a block, of the last, of that packed) and of one block packed by zlib. */
+  /**
+   * The numbers of the first data array whose tag contains `attribute`: base64 of a head (number of blocks, size of a block, of the last, of that packed) and
+   * of one block packed by zlib.
+   */
   std::vector<double>
   data_array(const std::string &file, const std::string &attribute)
   {

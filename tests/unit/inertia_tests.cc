@@ -116,7 +116,8 @@ TEST(Inertia, DerivativeIsThatOfTheResidual)
 
 TEST(Inertia, UndisturbedFlowIsThatOfTheDisturbance)
 {
-  // Where it vanishes at the walls the flow may be given either way: i(u + w) = i(u) with w undisturbed + i(w), here with w = (4 - z^2, 0, 0), for which i(w) is its mass.
+  // Where it vanishes at the walls the flow may be given either way: i(u + w) = i(w) + i(u) with w undisturbed, here with w = (4 - z^2, 0, 0), which
+  // convects nothing.
   FluidMesh mesh(MPI_COMM_WORLD, 4., mesh_parameters(1., 0.5));
   mesh.adapt({Point(0.1, 0.2, 0.3), Point(1.9, -1.9, -1.6)});
   const TaylorHoodSpace  space(mesh);

@@ -335,7 +335,8 @@ namespace
 
 TEST(Viscosity, ExcessStressIsTheStrainFormOfTheFlow)
 {
-  // The nodes hold the flow but at the faces of the box, far from the sphere: where mu - 1 is not zero both are the same. Also in cut cells, with weights of a part of them.
+  // The nodes hold the flow but at the faces of the box, far from the sphere: where mu - 1 is not zero both are the same. Also in cut cells, with weights of a
+  // part of them.
   Fluid       fluid(MPI_COMM_WORLD, 10., cells(1.25, 0.3125));
   const Point centre(0.1, 0., -0.2);
   fluid.adapt(oracle::sphere_points(centre, 1.));
@@ -376,7 +377,8 @@ TEST(Viscosity, ExcessStressIsTheStrainFormOfTheFlow)
 }
 
 
-// Across faces, where the nodes cannot hold a flow that the box is not periodic in: against integrals by the cells' positions, for test functions of one component at a time.
+// Across faces, where the nodes cannot hold a flow that the box is not periodic in: against integrals by the cells' positions, for test functions of one
+// component at a time.
 TEST(Viscosity, ExcessStressOfAFlowThatIsNotPeriodic)
 {
   Fluid       fluid(MPI_COMM_WORLD, 2., cells(0.5, 0.25));

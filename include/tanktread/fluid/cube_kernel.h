@@ -97,8 +97,8 @@ namespace tanktread
   };
 
   /**
-   * y += mass (u, v) + convection ((u_inf + u) . grad u + u . grad u_inf, v), by the 3 x 3 x 3 Gauss rule: the first term exactly. The undisturbed flow u_inf comes as the polynomial that it is: an array of nodes,
-   * where periodic copies are one, could not hold it.
+   * y += mass (u, v) + convection ((u_inf + u) . grad u + u . grad u_inf, v), by the 3 x 3 x 3 Gauss rule: the first term exactly. The undisturbed flow u_inf
+   * comes as the polynomial that it is: an array of nodes, where periodic copies are one, could not hold it.
    *
    * @param corners three numbers a cube, the coordinates of its lower corner.
    */

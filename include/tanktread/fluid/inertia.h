@@ -11,8 +11,9 @@
 namespace tanktread
 {
   /**
-   * Re ((u - uhat) / tau + (u_inf + u) . grad u + u . grad u_inf, v) for the disturbance u of the undisturbed flow u_inf, which solves the Navier-Stokes equations by itself, with a force per
-   * volume if need be: its own inertia is not among the terms, du_inf/dt neither. uhat and tau carry the time scheme, as for the positions of the shell: u_n and dt for backward Euler.
+   * Re ((u - uhat) / tau + (u_inf + u) . grad u + u . grad u_inf, v) for the disturbance u of the undisturbed flow u_inf, which solves the Navier-Stokes
+   * equations by itself, with a force per volume if need be: its own inertia is not among the terms, du_inf/dt neither. uhat and tau carry the time scheme, as
+   * for the positions of the shell: u_n and dt for backward Euler.
    *
    * Nothing is assembled; the integrals are those of the 3 x 3 x 3 Gauss rule on each cell. All calls are collective.
    */

@@ -57,8 +57,8 @@ namespace tanktread
     }
 
     /**
-     * y += 2 ((viscosity - 1) eps(u_inf), eps(v)): what the viscosity adds to the load of the flow that the velocities are disturbances of. Its strain rate is linear in space, for which the rules are exact where the
-     * viscosity is constant. Collective.
+     * y += 2 ((viscosity - 1) eps(u_inf), eps(v)): what the viscosity adds to the load of the flow that the velocities are disturbances of. Its strain rate is
+     * linear in space, for which the rules are exact where the viscosity is constant. Collective.
      */
     void
     add_excess_stress(const TaylorHoodSpace &space, const UndisturbedFlow &flow, FluidVector &y) const;
