@@ -34,16 +34,18 @@ namespace tanktread
    * the same mesh alone is `mesh` (s), and not part of the set-up. Collective, like all that follows.
    */
   inline SolverCost
-  cost_of_geometric(const Scene &scene, const ControlPoints &x, const FluidBlockVector &load, const double tolerance, double &mesh)
+  cost_of_geometric(Scene &scene, const State &state, const FluidBlockVector &load, const double tolerance, double &mesh)
   {
-    const auto points = scene.coupling.points(x);
-    mesh              = median_time(5, [&] { FluidMesh(MPI_COMM_WORLD, box_side, scene.mesh_parameters).adapt(points); });
+    const auto  points     = scene.coupling().points(scene.level().shells(state));
+    const auto &parameters = scene.description().fluid_mesh;
+    const auto &fluid      = scene.fluid();
+    mesh                   = median_time(5, [&] { FluidMesh(MPI_COMM_WORLD, box_side, parameters).adapt(points); });
     SolverCost cost;
-    cost.set_up = median_time(5, [&] { Fluid(MPI_COMM_WORLD, box_side, scene.mesh_parameters).adapt(points); }) - mesh;
+    cost.set_up = median_time(5, [&] { Fluid(MPI_COMM_WORLD, box_side, parameters).adapt(points); }) - mesh;
     FluidBlockVector flow;
     cost.solve = median_time(5, [&] {
-      scene.fluid.space().reinit(flow);
-      cost.report = solve_fgmres(scene.fluid.stokes(), scene.fluid.preconditioner(), flow, load, tolerance, 200);
+      fluid.space().reinit(flow);
+      cost.report = solve_fgmres(fluid.stokes(), fluid.preconditioner(), flow, load, tolerance, 200);
     });
     return cost;
   }
@@ -51,18 +53,18 @@ namespace tanktread
 
   /** The same with degrees of freedom, assembled matrices and the hierarchy of Trilinos ML on the mesh that is there. */
   inline SolverCost
-  cost_of_algebraic(const Scene &scene, const FluidBlockVector &load, const double tolerance)
+  cost_of_algebraic(const Fluid &fluid, const FluidBlockVector &load, const double tolerance)
   {
     std::unique_ptr<oracle::AssembledStokes>         stokes;
     std::unique_ptr<oracle::AlgebraicPreconditioner> preconditioner;
     SolverCost                                       cost;
     cost.set_up = median_time(1, [&] {
-      stokes         = std::make_unique<oracle::AssembledStokes>(scene.fluid.mesh());
+      stokes         = std::make_unique<oracle::AssembledStokes>(fluid.mesh());
       preconditioner = std::make_unique<oracle::AlgebraicPreconditioner>(*stokes);
     });
     oracle::ComponentVector loads, flow;
     stokes->reinit(loads);
-    stokes->to_components(scene.fluid.space(), load, loads);
+    stokes->to_components(fluid.space(), load, loads);
     cost.solve = median_time(3, [&] {
       stokes->reinit(flow);
       cost.report = solve_fgmres(*stokes, *preconditioner, flow, loads, tolerance, 200);
@@ -73,10 +75,10 @@ namespace tanktread
 
   /** Both, and the ratio for a mesh that lasts for ten solves. */
   inline Entries
-  compare_with_algebraic(const Scene &scene, const ControlPoints &x, const FluidBlockVector &load, const double tolerance)
+  compare_with_algebraic(Scene &scene, const State &state, const FluidBlockVector &load, const double tolerance)
   {
     double           mesh;
-    const SolverCost ours = cost_of_geometric(scene, x, load, tolerance, mesh), ml = cost_of_algebraic(scene, load, tolerance);
+    const SolverCost ours = cost_of_geometric(scene, state, load, tolerance, mesh), ml = cost_of_algebraic(scene.fluid(), load, tolerance);
     const auto       iterations = [](const std::string &name, const LinearReport &report) {
       return Entry{name, (report.converged ? "" : "failed after ") + std::to_string(report.iterations), 0.};
     };

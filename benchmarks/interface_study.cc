@@ -91,16 +91,16 @@ namespace
 
   /** A sphere that has been sheared for a while; control mesh of level 2. */
   FittedShape
-  sheared_sphere()
+  nearly_steady_sphere()
   {
-    Scene    scene(32);
+    Scene    scene(sheared_sphere(32), MPI_COMM_WORLD);
     Stepping stepping(scene, 0.2);
     for (unsigned int n = 0; n < 30; ++n)
       {
         stepping.refine_if_necessary();
         stepping.step();
       }
-    return {scene.shape.topology, stepping.state().x};
+    return {scene.capsule().topology(), stepping.x()};
   }
 
 
@@ -130,8 +130,8 @@ namespace
   ControlPoints
   smooth_forces(const GivenForces &scene)
   {
-    ControlPoints            f    = oracle::waves(scene.X, 1.5);
-    const Eigen::RowVector3d mean = scene.weights.transpose() * f / scene.weights.sum();
+    ControlPoints            f    = oracle::waves(scene.X(), 1.5);
+    const Eigen::RowVector3d mean = scene.weights().transpose() * f / scene.weights().sum();
     f.rowwise() -= mean;
     return scene.nodal_forces(f);
   }
@@ -149,7 +149,7 @@ namespace
       }
     else if (name == "steady")
       {
-        static const FittedShape capsule = sheared_sphere();
+        static const FittedShape capsule = nearly_steady_sphere();
         result.shape                     = refined(capsule, level - 2);
         result.forces                    = smooth_forces;
       }
@@ -163,7 +163,7 @@ namespace
             result.centre = {5.013, 5.031, -0.022};
           }
         const int degree = result.degree;
-        result.forces    = [degree](const GivenForces &scene) { return scene.nodal_forces(oracle::exact_on_sphere(scene.X, scene.centre, degree).first); };
+        result.forces    = [degree](const GivenForces &scene) { return scene.nodal_forces(oracle::exact_on_sphere(scene.X(), scene.centre(), degree).first); };
         if (name == "periodic")
           result.degree = 0;
       }
@@ -193,9 +193,9 @@ namespace
     for (const unsigned int cells : {128, 256})
       {
         const Problem       problem = make_problem(name, level, options.box);
-        GivenForces         scene(problem.shape, Interface::enriched, problem.box, {10. / cells, options.coarsest, 2., 4}, problem.centre);
+        GivenForces         scene(problem.shape, Interface::enriched, problem.box, {10. / cells, options.coarsest, 2., 4}, {problem.centre});
         const ControlPoints F        = problem.forces(scene);
-        const ControlPoints velocity = scene.flow(F, tolerance).velocity;
+        const ControlPoints velocity = scene.flow({F}, tolerance).velocity[0];
         const double        power    = F.cwiseProduct(velocity).sum();
         if (cells == 256)
           {
@@ -226,33 +226,33 @@ namespace
                       interface == "plain" ? Interface::plain : Interface::enriched,
                       problem.box,
                       {10. / cells, options.coarsest, options.band, options.grading},
-                      problem.centre);
+                      {problem.centre});
     const double        mesh_cpu = cpu_seconds() - start;
     const ControlPoints F        = problem.forces(scene);
 
     GivenForces::Flow flow;
-    const double      solve_cpu    = median_cpu(options.repeat, [&] { flow = scene.flow(F, tolerance); });
-    const double      geometry_cpu = median_cpu(options.repeat, [&] { scene.coupling.move(scene.state.x, scene.v); });
-    const double      stokes_cpu   = median_cpu(options.repeat, [&] {
+    const double      solve_cpu = median_cpu(options.repeat, [&] { flow = scene.flow({F}, tolerance); });
+    const double geometry_cpu   = median_cpu(options.repeat, [&] { scene.coupling.move(shell_configurations(scene.scene.capsule(), positions(scene.state))); });
+    const double stokes_cpu     = median_cpu(options.repeat, [&] {
       FluidBlockVector load, fields;
       scene.fluid.space().reinit(load);
       scene.fluid.space().reinit(fields);
-      scene.coupling.spread_plainly(F, load);
+      scene.coupling.spread_plainly({F}, load);
       solve_fgmres(scene.fluid.stokes(), scene.fluid.preconditioner(), fields, load, 1e-6, 200);
     });
 
-    const double power = F.cwiseProduct(flow.velocity).sum();
+    const double power = F.cwiseProduct(flow.velocity[0]).sum();
     double       error, wanted_power, reference_error = 0.;
     if (problem.degree > 0)
       {
-        const auto [traction, exact] = oracle::exact_on_sphere(scene.X, scene.centre, problem.degree);
-        error                        = scene.difference_at_points(scene.coupling_surface.S() * flow.velocity, exact);
-        wanted_power                 = traction.cwiseProduct(exact).rowwise().sum().dot(scene.weights);
+        const auto [traction, exact] = oracle::exact_on_sphere(scene.X(), scene.centre(), problem.degree);
+        error                        = scene.difference_at_points(scene.coupling_surface.S() * flow.velocity[0], exact);
+        wanted_power                 = traction.cwiseProduct(exact).rowwise().sum().dot(scene.weights());
       }
     else
       {
         const Reference &wanted = reference(name, level, options);
-        error                   = scene.difference(flow.velocity, wanted.velocity);
+        error                   = scene.difference(flow.velocity[0], wanted.velocity);
         wanted_power            = wanted.power;
         reference_error         = wanted.estimate;
       }

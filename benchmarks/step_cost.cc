@@ -47,40 +47,43 @@ namespace
   void
   measure_stokes(Scene &scene, const bool ml, Measurement &result)
   {
-    const double set_up = median_time(1, [&] { scene.refine_around(scene.deformed); });
-    result.n_cells      = scene.fluid.mesh().triangulation().n_global_active_cells();
-    const auto &space   = scene.fluid.space();
+    const Capsule &capsule = scene.capsule();
+    State          state;
+    const double   set_up = median_time(1, [&] { state = refine_around(scene, deformed(capsule)); });
+    const Fluid   &fluid  = scene.fluid();
+    const auto    &space  = fluid.space();
+    result.n_cells        = fluid.mesh().triangulation().n_global_active_cells();
 
     FluidBlockVector load, flow;
     space.reinit(load);
-    scene.coupling.spread(scene.shell.force(scene.deformed), load);
+    scene.coupling().spread({capsule.shell().force(state.capsules[0].x)}, load);
     LinearReport report;
     const double time = median_time(5, [&] {
       space.reinit(flow);
-      report = solve_fgmres(scene.fluid.stokes(), scene.fluid.preconditioner(), flow, load, relative_tolerance, max_iterations);
+      report = solve_fgmres(fluid.stokes(), fluid.preconditioner(), flow, load, relative_tolerance, max_iterations);
     });
     result.problem    = {count("cells", result.n_cells),
                          count("velocity unknowns", space.velocity->partitioner()->size()),
                          count("pressure unknowns", space.pressure->partitioner()->size()),
-                         count("control points", scene.surface.n_control_points()),
-                         count("coupling points", scene.coupling_surface.n_points()),
+                         count("control points", capsule.n_control_points()),
+                         count("coupling points", capsule.coupling_surface().n_points()),
                          seconds("mesh and multigrid", set_up),
                          solve("Stokes solve, iterations and s", report, time)};
     if (ml)
-      result.algebraic = compare_with_algebraic(scene, scene.deformed, load, relative_tolerance);
+      result.algebraic = compare_with_algebraic(scene, state, load, relative_tolerance);
   }
 
 
   /** Right-hand side with all blocks: forces of the shell on the fluid, divergence, flux, and the forces again as missing ones. */
   FluidBlockVector
-  loads(const Scene &scene, const LinearisedShell &shell, const ControlPoints &force)
+  loads(const Fluid &fluid, const LinearisedShells &shells, const ShellLayout &layout, const ControlPoints &force)
   {
-    FluidBlockVector result = monolithic_vector(scene.fluid.space(), force.rows()), flow(result), product(result);
-    scene.coupling.spread(force, result);
-    scene.fluid.preconditioner().vmult(flow, result);
-    scene.fluid.stokes().vmult(product, flow);
+    FluidBlockVector result = layout.vector(fluid.space()), flow(result), product(result);
+    shells.coupling().spread({force}, result);
+    fluid.preconditioner().vmult(flow, result);
+    fluid.stokes().vmult(product, flow);
     result.block(pressure_block) = product.block(pressure_block);
-    set_shell_unknowns(result, {1., shell.damped(force)});
+    layout.set(result, 0, 1., shells.damped(0, force));
     return result;
   }
 
@@ -93,10 +96,10 @@ namespace
 
   /**
    * A linear solve of Newton's method for the shell x, around which the mesh is, in the undisturbed flow; the loads are those of the deformed shell. Points are frozen, as
-   * the solver does it so far from a solution. Returns the set-up of LinearisedShell (s).
+   * the solver does it so far from a solution. Returns the set-up of LinearisedShells (s).
    */
   double
-  measure_implicit(const Scene         &scene,
+  measure_implicit(Scene               &scene,
                    const std::string   &name,
                    const ControlPoints &x,
                    const Tangent        tangent,
@@ -104,32 +107,35 @@ namespace
                    const double         tau,
                    Entries             &entries)
   {
-    const Shell            shell(scene.surface, {}, {stiffness.stretching / tau, stiffness.bending / tau}, scene.shape.control_points);
-    const DistributedShell distributed(shell, scene.shape.topology, MPI_COMM_WORLD);
-    ImplicitShell          implicit(MPI_COMM_WORLD);
-    const double           h         = scene.fluid.mesh().cell_size(scene.fluid.mesh().finest_level());
-    VelocityGradients      gradients = VelocityGradients::Zero(scene.coupling.n_local_points(), 9);
-    gradients.col(2).array()         = scene.flow.shear_rate;
-    State state;
-    state.x     = x;
-    state.force = shell.force(x);
-    std::unique_ptr<LinearisedShell> linear;
-    const double                     set_up = median_time(1, [&] {
-      linear = std::make_unique<LinearisedShell>(distributed,
-                                                 scene.surface,
-                                                 scene.coupling,
-                                                 state,
-                                                 scene.flow.velocity(x),
-                                                 gradients,
-                                                 Linearisation{tau, h, 1e-8, PointDerivatives::frozen, tangent, scene.flow.gradient()},
-                                                 implicit);
+    const Capsule         &capsule = scene.capsule();
+    const Fluid           &fluid   = scene.fluid();
+    const Shell            shell(capsule.surface(), {}, {stiffness.stretching / tau, stiffness.bending / tau}, capsule.initial());
+    const DistributedShell distributed(shell, capsule.topology(), MPI_COMM_WORLD);
+    const ShellLayout      layout(1, capsule.n_control_points(), MPI_COMM_WORLD);
+    SolverMemory           memory;
+    ImplicitShells         implicit(layout, memory);
+    State                  state                 = scene.initial_state();
+    state.capsules[0].x                          = x;
+    state.capsules[0].force                      = shell.force(x);
+    const ShellFields                 velocities = scene.coupling().undisturbed_velocity(scene.level().flow(), shell_configurations(capsule, {x}));
+    std::unique_ptr<LinearisedShells> linear;
+    const double                      set_up = median_time(1, [&] {
+      linear =
+        std::make_unique<LinearisedShells>(distributed,
+                                           scene.coupling(),
+                                           state,
+                                           shell_configurations(capsule, {x}),
+                                           velocities,
+                                           std::vector<VelocityGradients>{VelocityGradients::Zero(scene.coupling().transfer(0).n_points(), 9)},
+                                           Linearisation{tau, scene.level().finest_cell(), 1e-8, PointDerivatives::frozen, tangent, scene.level().flow()},
+                                           implicit);
     });
-    const MonolithicOperator         matrix(scene.fluid.stokes(), *linear);
-    const MonolithicPreconditioner   preconditioner(scene.fluid.preconditioner(), *linear, scene.volume);
-    const FluidBlockVector           rhs = loads(scene, *linear, shell.force(scene.deformed));
-    LinearReport                     report;
-    const auto                       solve_once = [&] {
-      FluidBlockVector solution = monolithic_vector(scene.fluid.space(), x.rows());
+    const MonolithicOperator          matrix(fluid.stokes(), *linear, layout);
+    const MonolithicPreconditioner    preconditioner(fluid.preconditioner(), *linear, layout, capsule.volume());
+    const FluidBlockVector            rhs = loads(fluid, *linear, layout, shell.force(deformed(capsule)));
+    LinearReport                      report;
+    const auto                        solve_once = [&] {
+      FluidBlockVector solution = layout.vector(fluid.space());
       report                    = solve_fgmres(matrix, preconditioner, solution, rhs, relative_tolerance, max_iterations);
     };
     double time = median_time(1, solve_once);
@@ -141,14 +147,14 @@ namespace
 
 
   Entries
-  measure_implicit_solves(const Scene &scene, const std::string &name, const ControlPoints &x, const Tangent tangent, const double tau)
+  measure_implicit_solves(Scene &scene, const std::string &name, const ControlPoints &x, const Tangent tangent, const double tau)
   {
     const Stiffness stiffnesses[] = {{1., 0.}, {10., 0.}, {0., 0.1}, {0., 10.}, {10., 1.}, {10., 10.}};
     double          set_up        = 0.;
     Entries         result(1);
     for (const Stiffness &stiffness : stiffnesses)
       set_up += measure_implicit(scene, name, x, tangent, stiffness, tau, result);
-    result[0] = seconds(name + " LinearisedShell", set_up / std::size(stiffnesses));
+    result[0] = seconds(name + " LinearisedShells", set_up / std::size(stiffnesses));
     return result;
   }
 
@@ -186,12 +192,12 @@ namespace
       {
         stepping.refine_if_necessary();
         const bool is_measured = n >= n_warm_up && stepping.has_previous();
-        scene.timings          = timings;
+        scene.timings()        = timings;
         NewtonReport report;
         const double time = median_time(1, [&] { report = stepping.step(); });
         if (!is_measured)
           continue;
-        timings = scene.timings;
+        timings = scene.timings();
         times.push_back(time);
         total += time;
         newton += report.newton_iterations;
@@ -216,7 +222,8 @@ namespace
         std::cerr << line(result.mesh, entries, &Entry::name) << line(result.mesh, entries, &Entry::text) << std::flush;
     };
     forget_peak_memory();
-    Scene scene(cells);
+    Scene          scene(sheared_sphere(cells), MPI_COMM_WORLD);
+    const Capsule &capsule = scene.capsule();
     measure_stokes(scene, ml, result);
     progress(result.problem);
     if (ml)
@@ -224,16 +231,16 @@ namespace
         progress(result.algebraic);
         return result;
       }
-    result.solves = measure_implicit_solves(scene, "deformed", scene.deformed, Tangent::positive, dt);
+    result.solves = measure_implicit_solves(scene, "deformed", deformed(capsule), Tangent::positive, dt);
     progress(result.solves);
-    scene.refine_around(scene.shape.control_points);
-    result.solves_at_sphere = measure_implicit_solves(scene, "sphere", scene.shape.control_points, Tangent::exact, dt);
+    refine_around(scene, capsule.initial());
+    result.solves_at_sphere = measure_implicit_solves(scene, "sphere", capsule.initial(), Tangent::exact, dt);
     progress(result.solves_at_sphere);
     measure_steps(scene, dt, result.steps);
     const double memory = peak_memory();
     result.steps.push_back({"peak memory, GB", formatted("%.2f", memory), memory});
     progress(result.steps);
-    Scene enriched(cells, Interface::enriched);
+    Scene enriched(sheared_sphere(cells, Interface::enriched), MPI_COMM_WORLD);
     measure_steps(enriched, dt, result.enriched_steps);
     progress(result.enriched_steps);
     return result;

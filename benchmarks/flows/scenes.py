@@ -58,6 +58,9 @@ def settings(name, resolution):
     result = {"Fluid mesh/Finest cell": f"{cell:g}", "Shell mesh/Level": str(level), "Scene/Box side": box}
     if name == "wall":
         result["Capsule/Centres"] = f"0, 0, {2 - side / 2:g}"
+        result["Scene/Frame velocity"] = f"{4 - side / 2:g}, 0, 0"  # near that of the capsule, so that the mesh need not follow it
+    if name == "parabola":
+        result["Scene/Frame velocity"] = "2.27, 0, 0"
     return result
 
 
@@ -92,12 +95,16 @@ class Result:
         folder = run.folder(resolution)
         tables = [run_files.read_table(file)[0] for file in run_files.of_each_capsule(folder, "history")]
         self.capsules = [with_way(run_files.standard_columns(table)) for table in tables if "time" in table]
-        if name == "wall":
-            side = float(self.record["settings"]["Scene/Box side"].split(",")[-1])
-            for series in self.capsules:  # the lower wall, at -side/2, moves with the velocity -side/2: seen from it
-                series["x"] = series["x"] + side / 2 * series["time"]
-                series["u_x"] = series["u_x"] + side / 2
+        settings = self.record["settings"]
+        frame = float(settings.get("Scene/Frame velocity", "0").split(",")[0])
+        if name == "wall":  # seen from the lower wall, which moves with the velocity -side/2
+            side = float(settings["Scene/Box side"].split(",")[-1])
+            frame += side / 2
+            for series in self.capsules:
                 series["z"] = series["z"] + side / 2 - 2
+        for series in self.capsules:
+            series["x"] = series["x"] + frame * series["time"]
+            series["u_x"] = series["u_x"] + frame
         if (folder / "suspension.csv").is_file():
             self.suspension = run_files.read_table(folder / "suspension.csv")[0]
 

@@ -16,8 +16,11 @@ namespace tanktread
     CapsuleQuadrature
     quadrature(const SceneDescription &scene, const FluidMesh &mesh)
     {
-      return capsule_quadrature(
-        scene.shape, scene.shell_quadrature, scene.solver.interface, mesh.cell_size(mesh.finest_level()), scene.liquids.viscosity_ratio);
+      return capsule_quadrature(scene.shape,
+                                scene.shell_quadrature,
+                                scene.coupling_points.value_or(scene.solver.interface),
+                                mesh.cell_size(mesh.finest_level()),
+                                scene.liquids.viscosity_ratio);
     }
   } // namespace
 

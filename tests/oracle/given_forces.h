@@ -5,83 +5,96 @@
 #define tanktread_oracle_given_forces_h
 
 #include <tanktread/base/exceptions.h>
-#include <tanktread/solver/newton_solver.h>
-#include <tanktread/surface/capsule_shape.h>
+#include <tanktread/solver/scene.h>
 #include <tanktread/surface/surface_geometry.h>
 
 #include <cmath>
 #include <utility>
+#include <vector>
 
 namespace tanktread::oracle
 {
-  /** A shell at rest in the fluid, without elasticity: forces are given. */
+  /** Shells of one shape at rest in the fluid, without elasticity: forces are given. */
   struct GivenForces
   {
-    /** @param side of the box. @param centre added to the control points. @param contrast of the viscosities. */
-    GivenForces(FittedShape                fitted,
-                const Interface            interface,
-                const double               side,
-                const FluidMeshParameters &mesh,
-                const Eigen::RowVector3d  &centre,
-                const ViscosityContrast   &contrast = {})
-      : shape(std::move(fitted))
-      , surface(shape.topology, triangle_quadrature(3), Derivatives::first)
-      , fluid(MPI_COMM_WORLD, side, mesh)
+    /** @param side of the box. @param centres added to the control points of each. @param contrast of the viscosities. */
+    GivenForces(const FittedShape                     &shape,
+                const Interface                        interface,
+                const double                           side,
+                const FluidMeshParameters             &mesh,
+                const std::vector<Eigen::RowVector3d> &centres,
+                const ViscosityContrast               &contrast = {})
+      : scene(description(shape, interface, side, mesh, centres, contrast), MPI_COMM_WORLD)
+      , fluid(scene.fluid())
+      , coupling(scene.coupling())
+      , coupling_surface(scene.capsule().coupling_surface())
       , h(fluid.mesh().cell_size(fluid.mesh().finest_level()))
-      , coupling_surface(shape.topology, coupling_quadrature(shape.topology, shape.control_points, Interface::enriched, h), Derivatives::second)
-      , coupling(coupling_surface, area_weights(coupling_surface, shape.control_points), interface)
-      , shell(surface, {}, {0., 0.}, shape.control_points)
-      , distributed(shell, shape.topology, MPI_COMM_WORLD)
-      , centre(centre)
-      , implicit_shell(MPI_COMM_WORLD)
-      , viscosity_ratio(contrast.ratio)
+      , state(scene.initial_state())
+      , shells(scene.level().shells(state))
     {
-      coupling.set_viscosity_contrast(contrast);
-      state.x = shape.control_points;
-      state.x.rowwise() += centre;
-      state.force = ControlPoints::Zero(state.x.rows(), 3);
-      fluid.adapt(coupling.points(state.x));
-      coupling.attach(fluid.space());
-      v = volume_gradient(surface, state.x);
-      coupling.move(state.x, v);
-      set_viscosity(contrast);
-      X       = coupling_surface.S() * state.x;
-      weights = area_weights(coupling_surface, state.x);
+      scene.refine_around(state);
+      coupling.move(shells);
+      scene.level().set_viscosity(state);
     }
 
-    /** Nodal forces of a density per area at the coupling's points. */
-    ControlPoints
-    nodal_forces(const ControlPoints &f) const
+    Eigen::RowVector3d
+    centre(const unsigned int c = 0) const
     {
-      return coupling_surface.S().transpose() * (weights.asDiagonal() * f);
+      return scene.description().centres[c];
+    }
+    /** Volume gradient of shell c. */
+    const ControlPoints &
+    v(const unsigned int c = 0) const
+    {
+      return shells[c]->volume_gradient();
+    }
+    /** The coupling's points on shell c. */
+    const ControlPoints &
+    X(const unsigned int c = 0) const
+    {
+      return shells[c]->points();
+    }
+    /** Their areas. */
+    const Eigen::VectorXd &
+    weights(const unsigned int c = 0) const
+    {
+      return shells[c]->point_areas();
+    }
+    double
+    viscosity_ratio() const
+    {
+      return scene.description().liquids.viscosity_ratio;
+    }
+
+    /** Nodal forces of a density per area at the coupling's points of shell c. */
+    ControlPoints
+    nodal_forces(const ControlPoints &f, const unsigned int c = 0) const
+    {
+      return coupling_surface.S().transpose() * (weights(c).asDiagonal() * f);
     }
 
     /** Flow (u, p, pi) that nodal forces drive, and the velocity of the control points. */
     struct Flow
     {
-      FluidBlockVector fields;
-      ControlPoints    velocity;
-      unsigned int     iterations;
+      FluidBlockVector    fields;
+      ShellFields         velocity;
+      std::vector<double> pressure_jumps;
+      unsigned int        iterations;
     };
 
     /**
-     * Collective. @param tolerance relative residual. @param n_sweeps of the viscous part of the jumps, after a first solve without. Throws NumericalError if the linear solver does not get there in
-     * 300 iterations.
+     * Collective. @param F nodal forces of each shell. @param tolerance relative residual. @param n_sweeps of the viscous part of the jumps, after a first solve without. Throws NumericalError if the linear
+     * solver does not get there in 300 iterations.
      */
     Flow
-    flow(const ControlPoints &F, const double tolerance, const unsigned int n_sweeps = 0)
+    flow(const ShellFields &F, const double tolerance, const unsigned int n_sweeps = 0)
     {
-      const LinearisedShell          linear(distributed,
-                                   surface,
-                                   coupling,
-                                   state,
-                                   ControlPoints::Zero(F.rows(), 3),
-                                   VelocityGradients::Zero(coupling.n_local_points(), 9),
-                                   Linearisation{0., 1., 0., PointDerivatives::frozen},
-                                   implicit_shell);
-      Flow                           result{monolithic_vector(fluid.space(), F.rows()), {}, 0};
-      const MonolithicOperator       matrix(fluid.stokes(), linear);
-      const MonolithicPreconditioner preconditioner(fluid.preconditioner(), linear, enclosed_volume(surface, state.x) / (0.5 * (1. + viscosity_ratio)));
+      const ShellLayout              layout(shells.size(), scene.capsule().n_control_points(), MPI_COMM_WORLD);
+      ImplicitShells                 implicit_shells(layout, scene.memory());
+      const LinearisedShells         linear = at_rest(implicit_shells);
+      Flow                           result{layout.vector(fluid.space()), {}, {}, 0};
+      const MonolithicOperator       matrix(fluid.stokes(), linear, layout);
+      const MonolithicPreconditioner preconditioner(fluid.preconditioner(), linear, layout, shells[0]->volume() / scene.level().liquids().mean_viscosity());
       for (unsigned int sweep = 0; sweep <= n_sweeps; ++sweep)
         {
           if (sweep > 0)
@@ -89,8 +102,8 @@ namespace tanktread::oracle
           FluidBlockVector rhs(result.fields);
           ExtendedForces   forces;
           rhs = 0.;
-          if (viscosity_ratio != 1.)
-            rhs.block(velocity_block) -= undisturbed_load;
+          if (scene.level().has_viscosities())
+            rhs.block(velocity_block) -= scene.level().undisturbed_load();
           coupling.extend_whole(F, forces);
           coupling.spread(1., F, forces, rhs);
           const LinearReport report = solve_fgmres(matrix, preconditioner, result.fields, rhs, tolerance, 300);
@@ -99,10 +112,12 @@ namespace tanktread::oracle
           result.iterations += report.iterations;
           result.velocity = coupling.interpolate(result.fields, forces);
         }
+      for (const ShellUnknowns &unknowns : layout.unknowns(result.fields))
+        result.pressure_jumps.push_back(unknowns.pressure_jump);
       return result;
     }
 
-    /** Relative difference of two velocities of the control points, L2 on the shell. */
+    /** Relative difference of two velocities of the control points, L2 on the first shell. */
     double
     difference(const ControlPoints &velocity, const ControlPoints &wanted) const
     {
@@ -113,38 +128,52 @@ namespace tanktread::oracle
     double
     difference_at_points(const ControlPoints &velocity, const ControlPoints &wanted) const
     {
-      return std::sqrt((velocity - wanted).rowwise().squaredNorm().dot(weights) / wanted.rowwise().squaredNorm().dot(weights));
+      return std::sqrt((velocity - wanted).rowwise().squaredNorm().dot(weights()) / wanted.rowwise().squaredNorm().dot(weights()));
     }
 
-    FittedShape        shape;
-    SubdivisionSurface surface;
-    Fluid              fluid;
-    double             h; // finest cell
-    SubdivisionSurface coupling_surface;
-    Coupling           coupling;
-    Shell              shell;
-    DistributedShell   distributed;
-    Eigen::RowVector3d centre;
-    ImplicitShell      implicit_shell;
-    State              state;
-    ControlPoints      v, X;    // volume gradient; the coupling's points
-    Eigen::VectorXd    weights; // and their areas
-    double             viscosity_ratio;
-    FluidVector        undisturbed_load; // empty with one viscosity
+    Scene                     scene;
+    Fluid                    &fluid;
+    Coupling                 &coupling;
+    const SubdivisionSurface &coupling_surface;
+    const double              h; // finest cell
+    const State               state;
+    const ShellConfigurations shells;
 
   private:
-    void
-    set_viscosity(const ViscosityContrast &contrast)
+    static SceneDescription
+    description(const FittedShape                     &shape,
+                const Interface                        interface,
+                const double                           side,
+                const FluidMeshParameters             &mesh,
+                const std::vector<Eigen::RowVector3d> &centres,
+                const ViscosityContrast               &contrast)
     {
-      if (viscosity_ratio == 1.)
-        return;
-      fluid.set_viscosity(coupling.viscosity(state.x));
-      dealii::Tensor<2, 3> gradient;
-      for (unsigned int c = 0; c < 3; ++c)
-        for (unsigned int d = 0; d < 3; ++d)
-          gradient[c][d] = contrast.flow_gradient(c, d);
-      undisturbed_load.reinit(fluid.space().velocity->partitioner());
-      fluid.viscosity()->add_excess_stress(fluid.space(), linear_flow(gradient), undisturbed_load);
+      SceneDescription result;
+      result.box                     = side;
+      result.liquids.flow.amplitude  = contrast.flow;
+      result.liquids.viscosity_ratio = contrast.ratio;
+      result.shape                   = shape;
+      result.centres                 = centres;
+      result.moduli                  = {0., 0.};
+      result.coupling_points         = Interface::enriched;
+      result.fluid_mesh              = mesh;
+      result.solver.interface        = interface;
+      return result;
+    }
+
+    LinearisedShells
+    at_rest(ImplicitShells &implicit_shells) const
+    {
+      ShellFields                    velocities;
+      std::vector<VelocityGradients> gradients;
+      for (unsigned int c = 0; c < shells.size(); ++c)
+        {
+          velocities.push_back(ControlPoints::Zero(shells[c]->x().rows(), 3));
+          gradients.push_back(VelocityGradients::Zero(coupling.transfer(c).n_points(), 9));
+        }
+      Linearisation choice; // tau = 0
+      choice.derivatives = PointDerivatives::frozen;
+      return {scene.elasticity(), coupling, state, shells, velocities, std::move(gradients), choice, implicit_shells};
     }
   };
 

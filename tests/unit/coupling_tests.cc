@@ -4,8 +4,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <gtest/gtest.h>
-#include <tanktread/coupling/coupling.h>
-#include <tanktread/surface/capsule_shape.h>
+#include <tanktread/solver/scene.h>
 #include <tanktread/surface/surface_geometry.h>
 
 #include <random>
@@ -16,24 +15,21 @@ using namespace tanktread;
 
 namespace
 {
-  struct Scene
+  /** A shell that crosses the periodic face x = 2, a velocity and forces that are not smooth at all. */
+  struct Example
   {
-    explicit Scene(const MPI_Comm communicator = MPI_COMM_WORLD)
-      : mesh(communicator, 4., parameters())
-      , shape(make_capsule({}, 2))
-      , surface(shape.topology, triangle_quadrature(3), Derivatives::first)
-      , coupling(surface, area_weights(surface, shape.control_points))
-      , x(shape.control_points)
+    explicit Example(const MPI_Comm communicator = MPI_COMM_WORLD)
+      : scene(description(), communicator)
+      , coupling(scene.coupling())
     {
-      x.col(0).array() += 1.3; // crosses the periodic face x = 2
-      x.col(2) *= 0.8;
+      State state = scene.initial_state();
+      state.capsules[0].x.col(2) *= 0.8;
       // Off the planes of symmetry: there points lie on faces of cells, across which velocity gradients jump.
-      x.rowwise() += Eigen::RowVector3d(0.00137, 0.00271, 0.00314);
-      mesh.adapt(coupling.points(x));
-      space = std::make_unique<TaylorHoodSpace>(mesh);
-      coupling.attach(*space);
-      coupling.move(x);
-      space->reinit(u);
+      state.capsules[0].x.rowwise() += Eigen::RowVector3d(1.3 + 0.00137, 0.00271, 0.00314);
+      x = state.capsules[0].x;
+      scene.refine_around(state);
+      move(x);
+      space().reinit(u);
       std::mt19937                     random(7 + dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD));
       std::normal_distribution<double> normal;
       for (double &number : u.block(velocity_block))
@@ -44,33 +40,49 @@ namespace
         f.data()[i] = normal(same_everywhere);
     }
 
-    static FluidMeshParameters
-    parameters()
+    static SceneDescription
+    description()
     {
-      FluidMeshParameters p;
-      p.coarsest_cell = 1.;
-      p.finest_cell   = 0.25;
-      return p;
+      SceneDescription result;
+      result.box                      = 4.;
+      result.shape                    = make_capsule({}, 2);
+      result.fluid_mesh.coarsest_cell = 1.;
+      result.fluid_mesh.finest_cell   = 0.25;
+      result.solver.interface         = Interface::plain;
+      return result;
     }
 
-    FluidMesh                        mesh;
-    FittedShape                      shape;
-    SubdivisionSurface               surface;
-    Coupling                         coupling;
-    ControlPoints                    x, f;
-    std::unique_ptr<TaylorHoodSpace> space;
-    FluidBlockVector                 u;
+    void
+    move(const ControlPoints &to)
+    {
+      coupling.move(shell_configurations(scene.capsule(), {to}));
+    }
+    const TaylorHoodSpace &
+    space()
+    {
+      return scene.fluid().space();
+    }
+    ControlPoints
+    interpolated(const FluidBlockVector &v) const
+    {
+      return coupling.interpolate(v)[0];
+    }
+
+    Scene            scene;
+    Coupling        &coupling;
+    ControlPoints    x, f;
+    FluidBlockVector u;
   };
 } // namespace
 
 
 TEST(Coupling, PowerOfShellIsPowerReceivedByFluid)
 {
-  Scene            s;
+  Example          s;
   FluidBlockVector load;
-  s.space->reinit(load);
-  s.coupling.spread(s.f, load);
-  const ControlPoints velocity = s.coupling.interpolate(s.u);
+  s.space().reinit(load);
+  s.coupling.spread({s.f}, load);
+  const ControlPoints velocity = s.interpolated(s.u);
   const double        power    = s.f.cwiseProduct(velocity).sum();
   EXPECT_GT(std::abs(power), 1e-3);
   EXPECT_NEAR(load * s.u, power, 1e-12 * s.f.norm() * velocity.norm());
@@ -80,15 +92,15 @@ TEST(Coupling, PowerOfShellIsPowerReceivedByFluid)
 TEST(Coupling, SpreadingConservesTotalForce)
 {
   // The constant velocity is in the space but for the walls, where it is constrained to zero; no point of this shell is in a cell at a wall.
-  Scene            s;
+  Example          s;
   FluidBlockVector load;
-  s.space->reinit(load);
-  s.coupling.spread(s.f, load);
+  s.space().reinit(load);
+  s.coupling.spread({s.f}, load);
   const FluidVector &forces = load.block(velocity_block);
   for (unsigned int c = 0; c < 3; ++c)
     {
       double total = 0.;
-      for (unsigned int node = 0; node < s.space->velocity->n_owned(); ++node)
+      for (unsigned int node = 0; node < s.space().velocity->n_owned(); ++node)
         total += forces.local_element(3 * node + c);
       EXPECT_NEAR(dealii::Utilities::MPI::sum(total, MPI_COMM_WORLD), s.f.col(c).sum(), 1e-11 * s.f.norm());
     }
@@ -97,28 +109,28 @@ TEST(Coupling, SpreadingConservesTotalForce)
 
 TEST(Coupling, MotionOfPointsIsTheDerivative)
 {
-  Scene                                  s;
+  Example                                s;
   std::mt19937                           same_everywhere(11);
   std::uniform_real_distribution<double> uniform(-1., 1.);
   const ControlPoints                    dx       = ControlPoints::NullaryExpr(s.x.rows(), 3, [&]() { return uniform(same_everywhere); });
   const auto                             power_at = [&](const ControlPoints &x) {
-    s.coupling.move(x);
-    return s.f.cwiseProduct(s.coupling.interpolate(s.u)).sum();
+    s.move(x);
+    return s.f.cwiseProduct(s.interpolated(s.u)).sum();
   };
   const double epsilon  = 1e-6;
   const double expected = (power_at(s.x + epsilon * dx) - power_at(s.x - epsilon * dx)) / (2. * epsilon);
-  s.coupling.move(s.x);
+  s.move(s.x);
 
   FluidBlockVector load;
-  s.space->reinit(load);
-  s.coupling.spread_with_motion(ControlPoints::Zero(s.x.rows(), 3), dx, s.coupling.density(s.f), load);
+  s.space().reinit(load);
+  s.coupling.spread_with_motion({ControlPoints::Zero(s.x.rows(), 3)}, {dx}, s.coupling.density({s.f}), load);
   const double scale = std::abs(expected) + 1.;
   EXPECT_NEAR(load * s.u, expected, 1e-5 * scale);
 
   SparseMatrix gamma;
   for (unsigned int call = 0; call < 2; ++call) // the second into the same matrix
-    s.coupling.gradient_matrix(s.coupling.velocity_gradients(s.u), gamma);
-  const ControlPoints   g        = s.coupling.density(s.f);
+    s.coupling.gradient_matrix(0, s.coupling.velocity_gradients(s.u)[0], gamma);
+  const ControlPoints   g        = s.coupling.density({s.f})[0];
   const Eigen::VectorXd gamma_dx = gamma * Eigen::Map<const Eigen::VectorXd>(dx.data(), dx.size());
   EXPECT_NEAR(Eigen::Map<const Eigen::VectorXd>(g.data(), g.size()).dot(gamma_dx), expected, 1e-5 * scale);
 }
@@ -127,9 +139,9 @@ TEST(Coupling, MotionOfPointsIsTheDerivative)
 TEST(Coupling, InterpolatesLinearVelocitiesExactly)
 {
   // u = (z, 0, 0) at the nodes off the walls: in every cell that the shell cuts it is the linear field, which the surface reproduces, so J u is u at the control points.
-  Scene s;
-  s.u                          = nodal_velocity(*s.space, [](const dealii::Point<3> &x) { return std::array<double, 3>{{x[2], 0., 0.}}; });
-  const ControlPoints velocity = s.coupling.interpolate(s.u);
+  Example s;
+  s.u                          = nodal_velocity(s.space(), [](const dealii::Point<3> &x) { return std::array<double, 3>{{x[2], 0., 0.}}; });
+  const ControlPoints velocity = s.interpolated(s.u);
   EXPECT_LT((velocity.col(0) - s.x.col(2)).cwiseAbs().maxCoeff(), 1e-11);
   EXPECT_LT(velocity.rightCols(2).cwiseAbs().maxCoeff(), 1e-14);
 }
@@ -137,46 +149,46 @@ TEST(Coupling, InterpolatesLinearVelocitiesExactly)
 
 TEST(Coupling, DensityIsTheForceOverTheMass)
 {
-  Scene               s;
-  const ControlPoints g = s.coupling.density(s.f);
+  Example             s;
+  const ControlPoints g = s.coupling.density({s.f})[0];
   EXPECT_GT(g.norm(), s.f.norm());
-  EXPECT_LT((s.coupling.mass() * g - s.f).norm(), 1e-12 * s.f.norm());
+  EXPECT_LT((s.scene.capsule().mass() * g - s.f).norm(), 1e-12 * s.f.norm());
 }
 
 
 TEST(Coupling, SameOnAnyNumberOfRanks)
 {
-  Scene               together, alone(MPI_COMM_SELF);
+  Example             together, alone(MPI_COMM_SELF);
   const Waves         waves(4.);
-  const auto          u = nodal_velocity(*together.space, waves), all_u = nodal_velocity(*alone.space, waves);
-  const ControlPoints moments = together.coupling.velocity_moments(u), all_moments = alone.coupling.velocity_moments(all_u);
+  const auto          u = nodal_velocity(together.space(), waves), all_u = nodal_velocity(alone.space(), waves);
+  const ControlPoints moments = together.coupling.velocity_moments(u)[0], all_moments = alone.coupling.velocity_moments(all_u)[0];
   EXPECT_GT(all_moments.norm(), 0.1);
   EXPECT_LT((moments - all_moments).norm(), 1e-12 * all_moments.norm());
-  EXPECT_LT((together.coupling.interpolate(u) - alone.coupling.interpolate(all_u)).norm(), 1e-12 * alone.coupling.interpolate(all_u).norm());
+  EXPECT_LT((together.interpolated(u) - alone.interpolated(all_u)).norm(), 1e-12 * alone.interpolated(all_u).norm());
 
   SparseMatrix gamma, all_gamma;
-  together.coupling.gradient_matrix(together.coupling.velocity_gradients(u), gamma);
-  alone.coupling.gradient_matrix(alone.coupling.velocity_gradients(all_u), all_gamma);
+  together.coupling.gradient_matrix(0, together.coupling.velocity_gradients(u)[0], gamma);
+  alone.coupling.gradient_matrix(0, alone.coupling.velocity_gradients(all_u)[0], all_gamma);
   EXPECT_LT((gamma - all_gamma).norm(), 1e-12 * all_gamma.norm());
 
-  const ControlPoints dx = ControlPoints::Ones(alone.x.rows(), 3) - 0.3 * alone.x, g = alone.coupling.density(alone.f);
+  const ControlPoints dx = ControlPoints::Ones(alone.x.rows(), 3) - 0.3 * alone.x, g = alone.coupling.density({alone.f})[0];
   for (const bool motion : {false, true})
     {
       FluidBlockVector load, all_load;
-      together.space->reinit(load);
-      alone.space->reinit(all_load);
+      together.space().reinit(load);
+      alone.space().reinit(all_load);
       if (motion)
-        together.coupling.spread_with_motion(together.f, dx, g, load);
+        together.coupling.spread_with_motion({together.f}, {dx}, {g}, load);
       else
-        together.coupling.spread(together.f, load);
+        together.coupling.spread({together.f}, load);
       if (motion)
-        alone.coupling.spread_with_motion(alone.f, dx, g, all_load);
+        alone.coupling.spread_with_motion({alone.f}, {dx}, {g}, all_load);
       else
-        alone.coupling.spread(alone.f, all_load);
+        alone.coupling.spread({alone.f}, all_load);
       EXPECT_NEAR(load.l2_norm(), all_load.l2_norm(), 1e-12 * all_load.l2_norm());
       for (const double phase : {0., 0.7, 1.9})
         {
-          const auto v = nodal_velocity(*together.space, Waves(4., phase)), w = nodal_velocity(*alone.space, Waves(4., phase));
+          const auto v = nodal_velocity(together.space(), Waves(4., phase)), w = nodal_velocity(alone.space(), Waves(4., phase));
           EXPECT_NEAR(load * v, all_load * w, 1e-12 * all_load.l2_norm() * w.l2_norm());
         }
     }

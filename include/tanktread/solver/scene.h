@@ -25,6 +25,7 @@ namespace tanktread
     ShellParameters                 shell;
     ShellModuli                     moduli{1., 0.};
     unsigned int                    shell_quadrature = 3; // points a face
+    std::optional<Interface>        coupling_points;      // as many of them as this interface needs, where that is not the one of `solver`
     FluidMeshParameters             fluid_mesh;
     SolverParameters                solver;
   };

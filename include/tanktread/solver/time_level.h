@@ -164,6 +164,12 @@ namespace tanktread
     {
       return flow_;
     }
+    /** 2 ((mu - 1) eps(u_inf), eps(v)); empty with one viscosity. */
+    const FluidVector &
+    undisturbed_load() const
+    {
+      return undisturbed_load_;
+    }
     Coupling &
     coupling() const
     {
@@ -198,8 +204,8 @@ namespace tanktread
     SolverMemory            &memory_;
     Timings                 &timings_;
     UndisturbedFlow          flow_;
-    FluidVector              undisturbed_load_; // 2 ((mu - 1) eps(u_inf), eps(v)); empty with one viscosity
-    std::unique_ptr<Inertia> inertia_;          // none without it
+    FluidVector              undisturbed_load_;
+    std::unique_ptr<Inertia> inertia_; // none without it
     Fluid                   *fluid_ = nullptr;
     ShellConfigurations      shells_; // where they were asked for last
   };
