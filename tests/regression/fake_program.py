@@ -32,7 +32,7 @@ def simple():
                "delta": 0.1 * t, "intrinsic_viscosity": 2.5}
 
 
-def from_reference(file, side, end):
+def from_reference(file, side, frame, end):
     """Rows at times that are not those of the file."""
     sys.path.insert(0, str(file.parents[1]))
     import numpy as np
@@ -42,7 +42,10 @@ def from_reference(file, side, end):
     row = {name: run_files.interpolated(table["t"], column, times) for name, column in table.items()}
     row.update(time=times, D_xz=row["D"] * (1 + (4 / side) ** 3), theta=row.get("theta_over_pi", 0 * times))
     if "wall" in file.name:
-        row.update(x=row["x"] - side / 2 * times, z=row["z"] + 2 - side / 2, u_x=row["u_x"] - side / 2)
+        row["z"] += 2 - side / 2
+        frame += side / 2  # the wall at rest moves in the box
+    if frame != 0:
+        row.update(x=row["x"] - frame * times, u_x=row["u_x"] - frame)
     return [{name: column[i] for name, column in row.items()} for i in range(len(times))]
 
 
@@ -60,7 +63,8 @@ def main():
     if prm.stem in REFERENCES:
         file = prm.parents[1] / f"reference/{REFERENCES[prm.stem]}_prestress0.05.csv"
         end = next(float(line.split("=")[1]) for line in prm.read_text().splitlines() if "End time" in line)
-        rows = from_reference(file, float(settings["Scene/Box side"].split(",")[-1]), end)
+        frame = float(settings.get("Scene/Frame velocity", "0").split(",")[0])
+        rows = from_reference(file, float(settings["Scene/Box side"].split(",")[-1]), frame, end)
     else:
         rows = list(simple())
     if prm.stem == "crossing_pair":
