@@ -44,8 +44,7 @@ namespace tanktread::oracle
       for (const auto &cell : mesh.triangulation().active_cell_iterators())
         if (cell->is_locally_owned())
           {
-            const auto [i, j, k] = mesh.key(cell).position;
-            if (const Lattice position = {{i, j, k}}; cell->level() == int(mesh.finest_level()) && candidates.count(position))
+            if (const Lattice position = lattice(mesh.key(cell).position); cell->level() == int(mesh.finest_level()) && candidates.count(position))
               add_cell(position, index);
             ++index;
           }
@@ -99,11 +98,11 @@ namespace tanktread::oracle
         {
           const auto   place = mesh.place(points[q], mesh.finest_level());
           const double f_n   = density_.row(q).dot(n.row(q));
-          points_[place.key.position].push_back({q, place.unit});
+          points_[lattice(place.key.position)].push_back({q, place.unit});
           for (int v = 0; v < 8; ++v)
             {
               const double  weight = hat(place.unit, v) * scene_.weights[q];
-              const Lattice here   = vertex(place.key.position, v);
+              const Lattice here   = vertex(lattice(place.key.position), v);
               areas[here] += weight;
               auto &sum = forces_.try_emplace(here, Eigen::RowVector4d::Zero()).first->second;
               sum.head<3>() += weight * (density_.row(q) - f_n * n.row(q));
