@@ -15,10 +15,10 @@ namespace tanktread
     for (const auto &cell : mesh.triangulation().active_cell_iterators())
       if (cell->is_locally_owned())
         {
-          const int size = 1 << (mesh.finest_level() - cell->level());
-          Lattice   position;
-          for (unsigned int d = 0; d < 3; ++d)
-            position[d] = std::int64_t(size) * mesh.key(cell).position[d];
+          const int size     = 1 << (mesh.finest_level() - cell->level());
+          Lattice   position = lattice(mesh.key(cell).position);
+          for (std::int64_t &i : position)
+            i *= size;
           cells_.push_back({position, size});
         }
   }

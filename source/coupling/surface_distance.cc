@@ -18,6 +18,9 @@ namespace tanktread
     /** Of the lattice there is no more than this to either side. Differences, doubles and neighbours of such indices are exact. */
     constexpr double farthest = 1e15;
 
+    /** No shell that a mesh can resolve has more rows of cells: they would take a gigabyte. */
+    constexpr double most_rows = 2e8;
+
 
     /** Order in which `items` have ascending keys in 0 ... n_keys - 1; equal ones stay as they are. Returns where each key begins, and the end. */
     template <typename Key>
@@ -37,8 +40,8 @@ namespace tanktread
 
 
     /**
-     * Squares of the distances, in cells, of a node from the cells -2, -1, 0 and 1 along one direction, where 0 contains it. One in the middle of a cell (with an odd index)
-     * has three that are at most one cell away, one at a corner four.
+     * Squares of the distances, in cells, of a node from the cells -2, -1, 0 and 1 along one direction, where 0 contains it. One in the middle of a cell (with
+     * an odd index) has three that are at most one cell away, one at a corner four.
      */
     const std::array<double, 4> &
     squares_to_cells(const bool is_odd)
@@ -114,6 +117,9 @@ namespace tanktread
         }
     size_x_ = high[0] - low_[0] + 1;
     rows_   = {low_[1], low_[2], high[1] - low_[1] + 1, high[2] - low_[2] + 1};
+    if (double(rows_.size_y) * rows_.size_z > most_rows || size_x_ > most_rows)
+      throw NumericalError("The shell extends over " + std::to_string(size_x_) + " x " + std::to_string(rows_.size_y) + " x " + std::to_string(rows_.size_z) +
+                           " of the finest cells: it has lost its shape.");
     sort_points(cells);
   }
 
@@ -201,7 +207,8 @@ namespace tanktread
   double
   SurfaceDistance::at(const Lattice &node) const
   {
-    // The nearest point, of several the first: row by row outwards, until what is left must be farther away. Cells are as good as the rounding of their points' positions.
+    // The nearest point, of several the first: row by row outwards, until what is left must be farther away. Cells are as good as the rounding of their points'
+    // positions.
     std::array<std::int64_t, 3> home; // the cell that contains the node, the upper one of two
     for (unsigned int d = 0; d < 3; ++d)
       home[d] = node[d] >= 0 ? node[d] / 2 : (node[d] - 1) / 2;

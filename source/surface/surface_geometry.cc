@@ -36,7 +36,9 @@ namespace tanktread
       return area_vectors(surface.S_1() * x, surface.S_2() * x, surface.n_points_per_face());
     }
 
-    /** The surface seen from the mean of its control points: X - xbar, a_1 and a_2 at every point. Without cancellation, however far from the origin it lies. */
+    /**
+     * The surface seen from the mean of its control points: X - xbar, a_1 and a_2 at every point. Without cancellation, however far from the origin it lies.
+     */
     struct CentredSurface
     {
       CentredSurface(const SubdivisionSurface &surface, const ControlPoints &x)

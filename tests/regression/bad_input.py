@@ -47,6 +47,18 @@ CASES = {
         1,
         ["case.prm:2: Capsule/Shape = cube; allowed: one of sphere, ellipsoid, oblate, biconcave, file"],
     ),
+    "deflated_to_nothing": (
+        section("Capsule", "set Prestress = -1"),
+        ["case.prm"],
+        1,
+        ["case.prm:2: Capsule/Prestress: got -1; allowed: an inflation above -0.5 and up to 9."],
+    ),
+    "spheroid_of_a_mesh_file": (
+        section("Capsule", "set Shape = file", "set Mesh file = a.off", "set Stress-free shape = oblate"),
+        ["case.prm"],
+        1,
+        ["case.prm:4: Capsule/Stress-free shape: ", "allowed with the shape 'file': initial"],
+    ),
     "two_errors": (
         section("Scene", "set Shear number G = -1", "set End tim = 1"),
         ["case.prm"],

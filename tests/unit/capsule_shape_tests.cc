@@ -189,9 +189,9 @@ namespace
     CapsuleShapeParameters   shape;
     dealii::ParameterHandler prm;
     shape.add_parameters(prm);
-    prm.parse_input_from_string(
-      "subsection Capsule\nset Shape = ellipsoid\nset Axes = 3, 2, 1\nset Inclination = 0.25\nset Inclined axis = symmetry\nset Mesh file = a.off\nset Aspect ratio = 0.7\n"
-      "set Stress-free shape = oblate\nset Stress-free aspect ratio = 0.95\nset Prestress = 0.05\nend\n");
+    prm.parse_input_from_string("subsection Capsule\nset Shape = ellipsoid\nset Axes = 3, 2, 1\nset Inclination = 0.25\nset Inclined axis = symmetry\n"
+                                "set Mesh file = a.off\nset Aspect ratio = 0.7\n"
+                                "set Stress-free shape = oblate\nset Stress-free aspect ratio = 0.95\nset Prestress = 0.05\nend\n");
     EXPECT_EQ(shape.stress_free, StressFreeShape::oblate);
     EXPECT_EQ(shape.stress_free_aspect_ratio, 0.95);
     EXPECT_EQ(shape.prestress, 0.05);

@@ -15,7 +15,8 @@ namespace
 
   TEST(RestState, AnInflatedCapsuleIsUnderTheTensionOfItsStretch)
   {
-    // Stretched by l = 1 + alpha_p in all directions, a membrane has an isotropic tension T per current length, theory (20g): it pulls like a soap film, with any work
+    // Stretched by l = 1 + alpha_p in all directions, a membrane has an isotropic tension T per current length, theory (20g): it pulls like a soap film, with
+    // any work
     // -f . dx = T dA, whatever the shape. Balanced by a pressure jump it is at rest if it is a sphere: 3 pi V = -f . x = 2 T A.
     CapsuleShapeParameters shape;
     shape.prestress = 0.05;

@@ -209,8 +209,16 @@ TEST(SurfaceDistance, DriftThroughManyBoxes)
                    here_value  = distance.at({{2 * cell[0], 2 * cell[1], 2 * cell[2]}});
       EXPECT_TRUE(std::abs(here_value) > h || std::abs(there_value - here_value) < 1e-4) << here_value << ' ' << there_value;
     }
+}
 
-  auto patches    = quadratic_patches(here.surface, here.x);
-  patches[3].X[1] = std::nan("");
-  EXPECT_THROW(SurfaceDistance(mesh(), patches), NumericalError);
+TEST(SurfaceDistance, RefusesPointsThatHaveLeftTheShell)
+{
+  const Scene scene(Shape::sphere);
+  for (const double place : {std::nan(""), std::numeric_limits<double>::infinity(), 1e300, -1e9})
+    for (unsigned int d = 0; d < 3; ++d)
+      {
+        auto patches    = quadratic_patches(scene.surface, scene.x);
+        patches[3].X[d] = place;
+        EXPECT_THROW(SurfaceDistance(mesh(), patches), NumericalError);
+      }
 }

@@ -21,7 +21,9 @@ namespace tanktread
   public:
     using std::runtime_error::runtime_error;
   };
-  /** A file could not be written (a full disk, a folder that is gone); the program exits with code 2. The message names the file and, where known, the reason. */
+  /**
+   * A file could not be written (a full disk, a folder that is gone); the program exits with code 2. The message names the file and, where known, the reason.
+   */
   class OutputError : public std::runtime_error
   {
   public:

@@ -57,7 +57,9 @@ namespace tanktread
     /** Writes to `screen`, which has to live longer than the log. */
     Log(bool active, std::ostream &screen);
 
-    /** From now on also writes to `file_name`. @throws OutputError when it cannot be written; when that happens later the screen says so, and the run goes on. */
+    /**
+     * From now on also writes to `file_name`. @throws OutputError when it cannot be written; when that happens later the screen says so, and the run goes on.
+     */
     void
     open(const std::string &file_name);
 

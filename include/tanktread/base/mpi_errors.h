@@ -11,8 +11,8 @@
 namespace tanktread
 {
   /**
-   * Runs `work` on the first rank only. What it throws there is thrown on all ranks, with the same message and, for InputError, NumericalError and OutputError, the
-   * same type. Collective.
+   * Runs `work` on the first rank only. What it throws there is thrown on all ranks, with the same message and, for InputError, NumericalError and OutputError,
+   * the same type. Collective.
    */
   void
   on_first_rank(MPI_Comm communicator, const std::function<void()> &work);

@@ -8,7 +8,10 @@
 
 namespace tanktread
 {
-  /** Writes beside `file` and renames, which POSIX does at once: a reader, or a kill, sees the old file or the new one. @throws OutputError; then nothing is left beside it. */
+  /**
+   * Writes beside `file` and renames, which POSIX does at once: a reader, or a kill, sees the old file or the new one. @throws OutputError; then nothing is
+   * left beside it.
+   */
   void
   replace_file(const std::string &file, const std::string &content);
 

@@ -11,8 +11,18 @@
 
 namespace tanktread
 {
-  /** Position of a finest cell, or twice that of a node, counted from the box's lower corner and not wrapped periodically: a capsule may drift through many periods. */
+  /**
+   * Position of a finest cell, or twice that of a node, counted from the box's lower corner and not wrapped periodically: a capsule may drift through many
+   * periods.
+   */
   using Lattice = std::array<std::int64_t, 3>;
+
+  /** Of a CellKey's position. */
+  inline Lattice
+  lattice(const std::array<int, 3> &position)
+  {
+    return {{position[0], position[1], position[2]}};
+  }
 
   /** The rows of cells along x with low_y <= y < low_y + size_y, the same in z. */
   struct LatticeRows

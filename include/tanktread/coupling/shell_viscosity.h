@@ -10,8 +10,9 @@
 namespace tanktread
 {
   /**
-   * Tells the cells inside the shell from those outside. Cells that it cuts, where the distances of the 27 nodes have both signs, have the smaller viscosity and weights for what there is more on the side of the larger
-   * one, see inside_weights(). Of the other cells those are inside that the shell's neighbourhood separates from the rest of the box, or whose distances are negative.
+   * Tells the cells inside the shell from those outside. Cells that it cuts, where the distances of the 27 nodes have both signs, have the smaller viscosity
+   * and weights for what there is more on the side of the larger one, see inside_weights(). Of the other cells those are inside that the shell's neighbourhood
+   * separates from the rest of the box, or whose distances are negative.
    */
   class ShellViscosity
   {

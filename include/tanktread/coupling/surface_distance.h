@@ -13,15 +13,16 @@
 namespace tanktread
 {
   /**
-   * Sorts the surface's points into the finest cells of the mesh, so that those near a node are found without a search. Distances are those from the nearest of the points
-   * within the cells that are at most one cell away from the node in each direction, by its quadratic_patch; they depend on the points alone, not on the mesh or the ranks.
+   * Sorts the surface's points into the finest cells of the mesh, so that those near a node are found without a search. Distances are those from the nearest of
+   * the points within the cells that are at most one cell away from the node in each direction, by its quadratic_patch; they depend on the points alone, not on
+   * the mesh or the ranks.
    *
    * Memory goes with the points and the rows of cells along x that pass the capsule, not with the cells around it.
    */
   class SurfaceDistance
   {
   public:
-    /** Throws NumericalError when a point has no place: a coordinate that is not finite. */
+    /** Throws NumericalError when a coordinate of a point is not finite, and when the points are as far apart as those of no shell. */
     SurfaceDistance(const FluidMesh &mesh, std::vector<QuadraticPatch> patches);
 
     /** All finest cells, whether or not they exist, that contain points or touch one that does; in an order that depends on the points alone. */

@@ -52,7 +52,9 @@ namespace tanktread
 
     // With a list of `faces` only these contribute: the sum over lists that hold every face once is what all faces give.
 
-    /** Energy of the membrane (of the thick shell, its bending included) and Helfrich energy; the latter is the same number for both forms of the bending work. */
+    /**
+     * Energy of the membrane (of the thick shell, its bending included) and Helfrich energy; the latter is the same number for both forms of the bending work.
+     */
     Energy
     energy(const ControlPoints &x) const;
     Energy
@@ -65,8 +67,8 @@ namespace tanktread
     force(const ControlPoints &x, const std::vector<unsigned int> &faces) const;
 
     /**
-     * The same forces, and K = -df/dx, 3 NP x 3 NP with the pattern of AssemblyPattern::block_matrix(). K is allocated unless it has that pattern from an earlier
-     * call; its values are overwritten. It is symmetric unless bending works in the form moment_only.
+     * The same forces, and K = -df/dx, 3 NP x 3 NP with the pattern of AssemblyPattern::block_matrix(). K is allocated unless it has that pattern from an
+     * earlier call; its values are overwritten. It is symmetric unless bending works in the form moment_only.
      */
     void
     force_and_tangent(const ControlPoints &x, ControlPoints &f, SparseMatrix &K, Tangent tangent = Tangent::exact) const;

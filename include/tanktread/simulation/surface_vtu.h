@@ -29,8 +29,8 @@ namespace tanktread
                     const std::vector<std::pair<std::string, Eigen::MatrixXd>> &point_fields);
 
   /**
-   * A ParaView data file: the list of the times of a run (12 digits) and of the VTU or PVTU files that belong to them. The file on disk is replaced at each new entry,
-   * so a run that is killed leaves a readable series.
+   * A ParaView data file: the list of the times of a run (12 digits) and of the VTU or PVTU files that belong to them. The file on disk is replaced at each new
+   * entry, so a run that is killed leaves a readable series.
    */
   class PvdFile
   {

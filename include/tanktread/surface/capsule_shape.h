@@ -51,8 +51,8 @@ namespace tanktread
    *   C2 = -1.1228; the symmetry axis is z (Evans & Fung 1972; Le 2010).
    * - file: the limit surface through the vertices of a closed triangle mesh; its connectivity is the control mesh.
    *
-   * Afterwards the shape is turned about y until the axis that `inclined_axis` names stands at `inclination` (in units of pi) to the x axis, positive towards +z;
-   * with the long axis that is the angle which InertiaEllipsoid::inclination measures. These are the axes before the turn:
+   * Afterwards the shape is turned about y until the axis that `inclined_axis` names stands at `inclination` (in units of pi) to the x axis, positive towards
+   * +z; with the long axis that is the angle which InertiaEllipsoid::inclination measures. These are the axes before the turn:
    *
    * | shape | long_axis | symmetry |
    * |---|---|---|
@@ -80,7 +80,10 @@ namespace tanktread
     void
     add_parameters(dealii::ParameterHandler &prm);
 
-    /** Throws InputError on values that make no shape, on an axis to incline that the shape does not have, and on a stress-free shape that has no material points. */
+    /**
+     * Throws InputError on values that make no shape, on an axis to incline that the shape does not have, and on a stress-free shape that has no material
+     * points.
+     */
     void
     check() const;
 
@@ -97,10 +100,10 @@ namespace tanktread
   };
 
   /**
-   * Control points whose limit surface is the shape wanted: a least-squares fit of the analytic shape on icosphere(level), or, for Shape::file, the limit surface
-   * that passes through the vertices (`level` is not used then). The enclosed volume is 4 pi/3 by a quadrature with 48 points a face
-   * (coarser rules see 1e-5 more or less at level 4, from the faces at extraordinary vertices), its centroid the origin. Throws InputError where check(), read_triangle_mesh() or check_closed_surface() do
-   * and where no surface passes through the vertices, NumericalError where the fit does not converge.
+   * Control points whose limit surface is the shape wanted: a least-squares fit of the analytic shape on icosphere(level), or, for Shape::file, the limit
+   * surface that passes through the vertices (`level` is not used then). The enclosed volume is 4 pi/3 by a quadrature with 48 points a face
+   * (coarser rules see 1e-5 more or less at level 4, from the faces at extraordinary vertices), its centroid the origin. Throws InputError where check(),
+   * read_triangle_mesh() or check_closed_surface() do and where no surface passes through the vertices, NumericalError where the fit does not converge.
    */
   FittedShape
   make_capsule(const CapsuleShapeParameters &parameters, unsigned int level);
@@ -109,9 +112,9 @@ namespace tanktread
    * Control points of the shell free of stress, for `initial` = make_capsule(parameters, ...): the same material points, on the same control mesh.
    *
    * - initial: the initial shape.
-   * - sphere, oblate (a spheroid with `stress_free_aspect_ratio` = b/a): the material point at s on the unit sphere is where the map of that shape has it, the initial shape
-   *   where its own has it. The area is that of the initial shape, as in the literature on red cells, where the membrane hardly changes it; the axis of symmetry is that of
-   *   the initial shape, the centroid the origin.
+   * - sphere, oblate (a spheroid with `stress_free_aspect_ratio` = b/a): the material point at s on the unit sphere is where the map of that shape has it, the
+   *   initial shape where its own has it. The area is that of the initial shape, as in the literature on red cells, where the membrane hardly changes it; the
+   *   axis of symmetry is that of the initial shape, the centroid the origin.
    *
    * All of it is smaller by 1/(1 + prestress), about the origin: a capsule that was inflated to the initial shape.
    *

@@ -22,8 +22,9 @@ namespace tanktread
   quadratic_patches(const SubdivisionSurface &surface, const ControlPoints &x);
 
   /**
-   * Distance of y from the patch, positive on the side of a_1 x a_2. The nearest point of the patch is found by Newton's method from its centre; one at a distance d along the surface from
-   * the centre carries an error of third order in d. Where the method leaves the patch's neighbourhood (|y - X| comparable to the radii of curvature), the distance from the tangent plane is returned.
+   * Distance of y from the patch, positive on the side of a_1 x a_2. The nearest point of the patch is found by Newton's method from its centre; one at a
+   * distance d along the surface from the centre carries an error of third order in d. Where the method leaves the patch's neighbourhood (|y - X| comparable to
+   * the radii of curvature), the distance from the tangent plane is returned.
    */
   double
   signed_distance(const QuadraticPatch &patch, const Eigen::Vector3d &y);

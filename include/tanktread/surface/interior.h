@@ -14,7 +14,8 @@ namespace tanktread
 {
   /**
    * Tells inside from outside. A point within a few spacings of the quadrature points is told by the normal of the nearest one; any other by the winding number
-   * 1/(4 pi) sum_c n_c . (X_c - y)/|X_c - y|^3 dGamma_c, which is 1 inside and 0 outside, with sums over the quadrature points of boxes as large as that distance in place of the points themselves.
+   * 1/(4 pi) sum_c n_c . (X_c - y)/|X_c - y|^3 dGamma_c, which is 1 inside and 0 outside, with sums over the quadrature points of boxes as large as that
+   * distance in place of the points themselves.
    */
   class Interior
   {

@@ -12,8 +12,8 @@
 namespace tanktread
 {
   /**
-   * Inverse of a symmetric positive definite matrix M on the control points, for fields of three components. P M P^T = L D L^T, P from a nested dissection; L passes through the
-   * processor once for all three components.
+   * Inverse of a symmetric positive definite matrix M on the control points, for fields of three components. P M P^T = L D L^T, P from a nested dissection; L
+   * passes through the processor once for all three components.
    */
   class MassInverse
   {

@@ -27,9 +27,9 @@ namespace tanktread
   volume_gradient(const SubdivisionSurface &surface, const ControlPoints &x);
 
   /**
-   * Second derivatives of the discrete volume with xbar held fixed, 3 NP x 3 NP, symmetric; the pattern is that of AssemblyPattern::block_matrix(). What xbar adds,
-   * -(1 (x) G + G^T (x) 1)/(3 NP) with G the derivative of sum_q w_q a_1 x a_2, has no sparse pattern and is of the size of the quadrature's error: for displacements that
-   * keep xbar it is the same small force on all points.
+   * Second derivatives of the discrete volume with xbar held fixed, 3 NP x 3 NP, symmetric; the pattern is that of AssemblyPattern::block_matrix(). xbar would
+   * add -(1 (x) G + G^T (x) 1)/(3 NP) with G the derivative of sum_q w_q a_1 x a_2, which has no sparse pattern and is of the size of the quadrature's error: for
+   * displacements that keep xbar it is the same small force on all points.
    */
   SparseMatrix
   volume_hessian(const SubdivisionSurface &surface, const ControlPoints &x);
@@ -42,7 +42,10 @@ namespace tanktread
   Eigen::VectorXd
   area_weights(const SubdivisionSurface &surface, const ControlPoints &x);
 
-  /** Mean curvature 1/2 a^{alpha beta} kappa_{alpha beta} with kappa_{alpha beta} = a_{alpha,beta} . a_3: -1/R on a sphere of radius R. Needs second derivatives. */
+  /**
+   * Mean curvature 1/2 a^{alpha beta} kappa_{alpha beta} with kappa_{alpha beta} = a_{alpha,beta} . a_3: -1/R on a sphere of radius R. Needs second
+   * derivatives.
+   */
   Eigen::VectorXd
   mean_curvature(const SubdivisionSurface &surface, const ControlPoints &x);
 
@@ -65,8 +68,8 @@ namespace tanktread
 
   /**
    * The ellipsoid that has the same volume integral of r r^T (hence the same inertia tensor) and mass as the enclosed volume: semi-axis sqrt(5 M_i / V) for the
-   * second moment M_i about the centroid, all by surface integrals with r from there. L and B come from the x-z block of the tensor, W from its yy entry, so y is taken as a
-   * principal axis, as it is in a shear flow u = (z, 0, 0).
+   * second moment M_i about the centroid, all by surface integrals with r from there. L and B come from the x-z block of the tensor, W from its yy entry, so y
+   * is taken as a principal axis, as it is in a shear flow u = (z, 0, 0).
    */
   InertiaEllipsoid
   inertia_ellipsoid(const SubdivisionSurface &surface, const ControlPoints &x);
