@@ -22,6 +22,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <sstream>
 #include <thread>
@@ -267,6 +268,18 @@ TEST(ParameterFile, ReportsAllErrorsTogether)
     EXPECT_NE(message.find(place), std::string::npos) << message;
 }
 
+TEST(ParameterFile, AnEmptyFileIsOne)
+{
+  const std::string name = "/tmp/tanktread_base_tests_" + std::to_string(getpid()) + ".prm";
+  for (const char *const text : {"", "\n", "# nothing"})
+    {
+      std::ofstream(name) << text;
+      Sample sample;
+      EXPECT_NO_THROW(read_parameter_file(sample.prm, name)) << text;
+    }
+  std::remove(name.c_str());
+}
+
 TEST(ParameterFile, MissingFileIsNamed)
 {
   for (const char *const name : {"/no/such/file.prm", "/tmp"})
@@ -296,6 +309,9 @@ TEST(ParameterTable, PatternsInWords)
   EXPECT_EQ(pattern_in_words("[Selection a|b c ]"), "one of a, b c");
   EXPECT_EQ(pattern_in_words("[List of <[Double 0...MAX_DOUBLE (inclusive)]> of length 3...3 (inclusive)]"),
             "3 entries separated by commas, each a number >= 0");
+  EXPECT_EQ(pattern_in_words("[List of <[Bool]> of length 1...3 (inclusive)]"), "1 to 3 entries separated by commas, each true or false");
+  EXPECT_EQ(pattern_in_words("[List of <[List of <[Integer]> of length 3...3 (inclusive)]> of length 1...1000000 (inclusive) separated by <;>]"),
+            "entries separated by semicolons, each 3 entries separated by commas, each a whole number");
   EXPECT_EQ(pattern_in_words("[Else]"), "[Else]");
 }
 
@@ -435,17 +451,26 @@ TEST(Log, HeaderNamesVersionsScalesAndWhatIsLeftOut)
   run.n_ranks        = 3;
   run.G              = 0.05;
   run.khat           = 0.01;
-  run.box_side       = 12;
+  run.flow           = "planar extension";
+  run.box            = "12 x 12 periodic x 12";
   run.left_out       = {"inertia (Re = 0)"};
   log.header(run);
   for (const std::string &part : {program_version(), library_versions(), std::string("3 ranks"), std::string("a.prm"), std::string("inertia (Re = 0)")})
     EXPECT_NE(screen.str().find(part), std::string::npos) << part;
   EXPECT_NE(screen.str().find("Ca   = 0.15 "), std::string::npos) << screen.str();
-  EXPECT_NE(screen.str().find("box  = 12 "), std::string::npos) << screen.str();
+  EXPECT_NE(screen.str().find("flow = planar extension\n"), std::string::npos) << screen.str();
+  EXPECT_NE(screen.str().find("box  = 12 x 12 periodic x 12\n"), std::string::npos) << screen.str();
+  EXPECT_EQ(screen.str().find("capsules"), std::string::npos) << screen.str();
   EXPECT_EQ(screen.str().find("with inertia"), std::string::npos) << screen.str();
   run.Re = 0.5;
   log.header(run);
   EXPECT_NE(screen.str().find("Re   = 0.5       rho gamma a^2 / mu: with inertia"), std::string::npos) << screen.str();
+  run.n_capsules = 3;
+  run.has_rate   = false;
+  log.header(run);
+  EXPECT_NE(screen.str().find("N    = 3 capsules"), std::string::npos) << screen.str();
+  EXPECT_NE(screen.str().find("time in mu a^3 / kappa_B.\n"), std::string::npos) << screen.str();
+  EXPECT_NE(screen.str().find("Re   = 0.5       rho kappa_B / (mu^2 a): with inertia"), std::string::npos) << screen.str();
 }
 
 TEST(Log, ColumnNamesEveryTwentySteps)
