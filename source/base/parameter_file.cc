@@ -333,8 +333,10 @@ namespace tanktread
   {
     std::ifstream     file(file_name);
     std::stringstream text;
-    if (!file || !(text << file.rdbuf()))
-      throw InputError("cannot read the parameter file " + quoted(file_name) + "; allowed: a readable, non-empty file");
+    // Of an empty file nothing can be copied, which is no error; a folder can be opened, but not read.
+    const bool is_empty = file && file.peek() == std::ifstream::traits_type::eof() && !file.bad();
+    if (!is_empty && !(file && text << file.rdbuf()))
+      throw InputError("cannot read the parameter file " + quoted(file_name) + "; allowed: a readable file");
     return read_parameter_text(prm, text.str(), file_name, overrides);
   }
 } // namespace tanktread

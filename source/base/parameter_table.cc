@@ -125,6 +125,21 @@ namespace tanktread
     {
       return std::regex_replace(text, std::regex("\\|"), "\\|");
     }
+
+    /** Numbers of entries with many digits stand for any number. */
+    std::string
+    count_in_words(const std::string &low, const std::string &high)
+    {
+      if (low == high)
+        return low + " entries";
+      return high.size() > 2 ? "entries" : low + " to " + high + " entries";
+    }
+
+    std::string
+    separator_in_words(const std::string &separator)
+    {
+      return separator.empty() || separator == "," ? "commas" : separator == ";" ? "semicolons" : "'" + separator + "'";
+    }
   } // namespace
 
   std::vector<ParameterInfo>
@@ -150,11 +165,8 @@ namespace tanktread
       return range_in_words("a whole number", found[1], found[2]);
     if (std::regex_match(description, found, std::regex("\\[Selection (.*)\\]")))
       return selection_in_words(found[1]);
-    if (std::regex_match(description, found, std::regex("\\[List of <(.*)> of length (\\d+)\\.\\.\\.(\\d+) \\(inclusive\\).*\\]")))
-      {
-        const std::string count = found[2] == found[3] ? found[2].str() + " entries" : "entries";
-        return count + " separated by commas, each " + pattern_in_words(found[1]);
-      }
+    if (std::regex_match(description, found, std::regex("\\[List of <(.*)> of length (\\d+)\\.\\.\\.(\\d+) \\(inclusive\\)(?: separated by <(.+)>)?\\]")))
+      return count_in_words(found[2], found[3]) + " separated by " + separator_in_words(found[4]) + ", each " + pattern_in_words(found[1]);
     if (description == "[Bool]")
       return "true or false";
     if (description == "[Anything]")

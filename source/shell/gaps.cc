@@ -31,20 +31,15 @@ namespace tanktread
       double
       distance(const ControlPoints &points, const Eigen::RowVector3d &shift, const unsigned int stride)
       {
-        const double spacing = std::sqrt(shell_.point_areas().maxCoeff()); // about the distance of neighbouring points
-        double       result = std::numeric_limits<double>::infinity(), nearest = result;
+        double result = std::numeric_limits<double>::infinity();
         for (Eigen::Index q = 0; q < points.rows(); q += stride)
           {
             const Eigen::RowVector3d y = points.row(q) + shift;
             // Points that cannot be nearer than what has been found.
             if ((low_ - y).cwiseMax(y - high_).cwiseMax(0.).norm() > std::max(0., result))
               continue;
-            const auto   found    = *tree().qbegin(geometry::index::nearest(Point(y[0], y[1], y[2]), 1));
-            const double straight = (shell_.points().row(found.second) - y).norm();
-            if (straight > nearest + spacing)
-              continue;
-            nearest = std::min(nearest, straight);
-            result  = std::min(result, signed_distance(patch(found.second), y.transpose()));
+            const auto found = *tree().qbegin(geometry::index::nearest(Point(y[0], y[1], y[2]), 1));
+            result           = std::min(result, signed_distance(patch(found.second), y.transpose()));
           }
         return result;
       }

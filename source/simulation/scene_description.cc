@@ -6,6 +6,7 @@
 #include <tanktread/simulation/scene_description.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <sstream>
 #include <utility>
@@ -77,7 +78,7 @@ namespace tanktread
         }
       if (const ShellGap smallest = smallest_gap(shells, periods, 4. * h); smallest.gap <= 0.)
         {
-          message << "Capsule/Centres: capsules " << smallest.first + 1 << " and " << smallest.second + 1 << " overlap by " << -smallest.gap
+          message << "Capsule/Centres: capsules " << smallest.first + 1 << " and " << smallest.second + 1 << " overlap by " << std::abs(smallest.gap)
                   << " a; allowed: capsules that do not touch, periodic images included.";
           throw InputError(message.str());
         }

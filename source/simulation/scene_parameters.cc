@@ -44,13 +44,14 @@ namespace tanktread
     using namespace dealii::Patterns;
     const double positive = std::numeric_limits<double>::min();
     prm.enter_subsection("Scene");
-    add_enum_parameter(prm,
-                       "Flow",
-                       flow,
-                       flows(),
-                       "Undisturbed flow, of rate one. shear: (z, 0, 0). planar extension: (x, 0, -z). uniaxial extension: (x, -y/2, -z/2). linear: 'Velocity gradient' "
-                       "times the position. plane Poiseuille: (H/2 (1 - z^2/H^2), 0, 0), H the 'Channel half width'. Time is in 1/rate. quiescent: a liquid at rest, "
-                       "time in mu a^3 / kappa_B.");
+    add_enum_parameter(
+      prm,
+      "Flow",
+      flow,
+      flows(),
+      "Undisturbed flow, of rate one. shear: (z, 0, 0). planar extension: (x, 0, -z). uniaxial extension: (x, -y/2, -z/2). linear: 'Velocity gradient' "
+      "times the position. plane Poiseuille: (H/2 (1 - z^2/H^2), 0, 0), H the 'Channel half width'. Time is in 1/rate. quiescent: a liquid at rest, "
+      "time in mu a^3 / kappa_B.");
     prm.add_parameter("Velocity gradient",
                       velocity_gradient,
                       "du_x/dx, du_x/dy, du_x/dz, du_y/dx, ... of the flow 'linear', in the rate that G is made with; no divergence.",
@@ -59,19 +60,21 @@ namespace tanktread
                       oscillation_frequency,
                       "Angular frequency w, in radians per unit of time, of a flow that swings: the undisturbed flow times cos(w t). 0: a steady flow.",
                       Double(0.));
-    prm.add_parameter("Frame velocity",
-                      frame_velocity,
-                      "Velocity of the frame of all positions and velocities against the one in which the flow is as given above: near that of the capsule its cells stay "
-                      "where they are. Faces with prescribed velocity are at rest where the flow as given is.",
-                      List(Double(), 3, 3));
+    prm.add_parameter(
+      "Frame velocity",
+      frame_velocity,
+      "Velocity of the frame of all positions and velocities against the one in which the flow is as given above: near that of the capsule its cells stay "
+      "where they are. Faces with prescribed velocity are at rest where the flow as given is.",
+      List(Double(), 3, 3));
     prm.add_parameter("Channel half width",
                       channel_half_width,
                       "H of plane Poiseuille flow: its velocity is zero and its shear rate one at z = -H and H, in a. 0: at the faces of the box.",
                       Double(0.));
-    prm.add_parameter("Shear number G",
-                      shear_number,
-                      "G = mu gamma a / M with the surface modulus M named by 'Scale modulus', E h unless said otherwise, and gamma the rate of the flow. Unused without flow.",
-                      Double(positive));
+    prm.add_parameter(
+      "Shear number G",
+      shear_number,
+      "G = mu gamma a / M with the surface modulus M named by 'Scale modulus', E h unless said otherwise, and gamma the rate of the flow. Unused without flow.",
+      Double(positive));
     prm.add_parameter("Reduced bending modulus", reduced_bending_modulus, "khat = kappa_B / (a^2 M), M as for G.", Double(0.));
     add_enum_parameter(
       prm,
@@ -85,12 +88,16 @@ namespace tanktread
                       reynolds_number,
                       "Re = rho gamma a^2 / mu with flow, rho kappa_B / (mu^2 a) without, the same density everywhere; 0: Stokes flow.",
                       Double(0.));
-    prm.add_parameter("Box side", box_side, "Side of the box, in a, whose middle is the origin: one number, or three along x, y and z.", List(Double(3.), 1, 3));
-    prm.add_parameter("Box faces",
-                      box_faces,
-                      "What holds on the faces of the box across x, y and z. periodic: what leaves on one side comes in on the other; the flow must not change along that axis. "
-                      "prescribed: the velocity is that of the undisturbed flow, a wall where that does not pass the face.",
-                      List(Selection("periodic|prescribed"), 3, 3));
+    prm.add_parameter("Box side",
+                      box_side,
+                      "Side of the box, in a, whose middle is the origin: one number, or three along x, y and z.",
+                      List(Double(3.), 1, 3));
+    prm.add_parameter(
+      "Box faces",
+      box_faces,
+      "What holds on the faces of the box across x, y and z. periodic: what leaves on one side comes in on the other; the flow must not change along that axis. "
+      "prescribed: the velocity is that of the undisturbed flow, a wall where that does not pass the face.",
+      List(Selection("periodic|prescribed"), 3, 3));
     prm.add_parameter("End time", end_time, "The run ends at this time.", Double(0.));
     prm.leave_subsection();
   }
@@ -154,7 +161,8 @@ namespace tanktread
     else if (oscillation_frequency > 0. && std::hypot(frame_velocity[0], frame_velocity[1], frame_velocity[2]) > 0.)
       message << "Scene/Frame velocity is not zero; allowed with Scene/Oscillation frequency = " << oscillation_frequency << ": 0, 0, 0";
     else if (oscillation_frequency > 0. && viscosity_ratio != 1.)
-      message << "Scene/Oscillation frequency is " << oscillation_frequency << "; allowed with Scene/Viscosity ratio = " << viscosity_ratio << " in this version: 0";
+      message << "Scene/Oscillation frequency is " << oscillation_frequency << "; allowed with Scene/Viscosity ratio = " << viscosity_ratio
+              << " in this version: 0";
     if (!message.str().empty())
       throw InputError(message.str());
   }
@@ -174,8 +182,8 @@ namespace tanktread
       {
         open = open && box.is_periodic(d);
         if (box.is_periodic(d) && flow.varies_along(d))
-          throw InputError("Scene/Box faces has 'periodic' across " + std::string(1, axes[d]) + ", but the flow (" + word(this->flow) + ") changes along " + axes[d] +
-                           "; allowed there: prescribed");
+          throw InputError("Scene/Box faces has 'periodic' across " + std::string(1, axes[d]) + ", but the flow (Scene/Flow = " + word(this->flow) +
+                           ") changes along " + axes[d] + "; allowed there: prescribed");
       }
     if (open)
       throw InputError("Scene/Box faces has 'periodic' across all axes; allowed: 'prescribed' across one at least, which keeps the box in place");

@@ -64,11 +64,12 @@ namespace tanktread
     }
 
 
-    /** How fast axes (a) and inclination (radians) change. */
+    /** How fast axes (a) and inclination (radians) change; the latter counts where the section has one. */
     double
     rate_of_change(const InertiaEllipsoid &before, const InertiaEllipsoid &after, const double length)
     {
-      const double turn   = std::remainder(after.inclination - before.inclination, dealii::numbers::PI);
+      const bool   is_round = before.taylor_parameter < 1e-4 && after.taylor_parameter < 1e-4;
+      const double turn     = is_round ? 0. : std::remainder(after.inclination - before.inclination, dealii::numbers::PI);
       const double change = std::max({std::abs(after.L - before.L), std::abs(after.B - before.B), std::abs(after.W - before.W), std::abs(turn)});
       return change / length;
     }

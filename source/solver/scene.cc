@@ -5,6 +5,7 @@
 
 #include <tanktread/solver/scene.h>
 
+#include <cmath>
 #include <limits>
 #include <sstream>
 #include <utility>
@@ -106,7 +107,7 @@ namespace tanktread
     const ShellGap     smallest = gap(state);
     std::ostringstream message;
     if (dealii::Utilities::MPI::broadcast(communicator_, smallest.gap, 0) <= 0.)
-      message << "capsules " << smallest.first + 1 << " and " << smallest.second + 1 << " overlap by " << -smallest.gap << " a";
+      message << "capsules " << smallest.first + 1 << " and " << smallest.second + 1 << " overlap by " << std::abs(smallest.gap) << " a";
     return message.str();
   }
 } // namespace tanktread

@@ -135,8 +135,40 @@ CASES = {
         2,
         ["numerical failure", "did not converge", "iterations"],
     ),
+    # --validate finds what only the shapes tell.
+    "validate_too_thick": (
+        section("Capsule", "set Shape = oblate", "set Aspect ratio = 0.5", "set Thickness = 0.7"),
+        ["--validate", "case.prm"],
+        1,
+        ["case.prm:4: Capsule/Thickness: got 0.7", "less than twice the smallest radius of curvature"],
+    ),
+    "validate_too_large": (
+        section("Capsule", "set Shape = ellipsoid", "set Axes = 6, 1, 1") + section("Scene", "set Box side = 5"),
+        ["--validate", "case.prm"],
+        1,
+        ["case.prm:6: Scene/Box side is 5 along x; allowed: more than 7.2", "the capsule's extent and four finest cells"],
+    ),
+    "validate_overlap": (
+        section("Capsule", "set Centres = 0, 0, 0; 1.5, 0, 0"),
+        ["--validate", "case.prm"],
+        1,
+        ["case.prm:2: Capsule/Centres: capsules 1 and 2 overlap by 0.499"],
+    ),
+    "validate_beyond_a_wall": (
+        section("Capsule", "set Centres = 0, 0, 4.5"),
+        ["--validate", "case.prm"],
+        1,
+        ["case.prm:2: Capsule/Centres: a capsule reaches 0.499", "beyond a face of the box"],
+    ),
+    "validate_flow_along_a_periodic_axis": (
+        section("Scene", "set Flow = planar extension"),
+        ["--validate", "case.prm"],
+        1,
+        ["case.prm:2: Scene/Box faces has 'periodic' across x", "Scene/Flow = planar extension"],
+    ),
     # and, so that the cases above cannot pass with a program that refuses everything:
     "good_input": (section("Scene", "set End time = 1"), ["--validate", "case.prm"], 0, ["valid"]),
+    "empty_file": ("", ["--validate", "case.prm"], 0, ["valid"]),
     "print_parameters": ("", ["--print-parameters"], 0, ["subsection Scene", "set Shear number G = 0.05"]),
     "version": ("", ["--version"], 0, ["Tanktread", "deal.II"]),
 }

@@ -201,6 +201,18 @@ TEST(ParameterFile, ReportsAllErrorsTogether)
     EXPECT_NE(message.find(place), std::string::npos) << message;
 }
 
+TEST(ParameterFile, AnEmptyFileIsOne)
+{
+  const std::string name = "/tmp/tanktread_base_tests_" + std::to_string(getpid()) + ".prm";
+  for (const char *const text : {"", "\n", "# nothing"})
+    {
+      std::ofstream(name) << text;
+      Sample sample;
+      EXPECT_NO_THROW(read_parameter_file(sample.prm, name)) << text;
+    }
+  std::remove(name.c_str());
+}
+
 TEST(ParameterFile, MissingFileIsNamed)
 {
   for (const char *const name : {"/no/such/file.prm", "/tmp"})
@@ -230,6 +242,9 @@ TEST(ParameterTable, PatternsInWords)
   EXPECT_EQ(pattern_in_words("[Selection a|b c ]"), "one of a, b c");
   EXPECT_EQ(pattern_in_words("[List of <[Double 0...MAX_DOUBLE (inclusive)]> of length 3...3 (inclusive)]"),
             "3 entries separated by commas, each a number >= 0");
+  EXPECT_EQ(pattern_in_words("[List of <[Bool]> of length 1...3 (inclusive)]"), "1 to 3 entries separated by commas, each true or false");
+  EXPECT_EQ(pattern_in_words("[List of <[List of <[Integer]> of length 3...3 (inclusive)]> of length 1...1000000 (inclusive) separated by <;>]"),
+            "entries separated by semicolons, each 3 entries separated by commas, each a whole number");
   EXPECT_EQ(pattern_in_words("[Else]"), "[Else]");
 }
 

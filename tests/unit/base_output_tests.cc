@@ -120,17 +120,26 @@ TEST(Log, HeaderNamesVersionsScalesAndWhatIsLeftOut)
   run.n_ranks        = 3;
   run.G              = 0.05;
   run.khat           = 0.01;
-  run.box_side       = 12;
+  run.flow           = "planar extension";
+  run.box            = "12 x 12 periodic x 12";
   run.left_out       = {"inertia (Re = 0)"};
   log.header(run);
   for (const std::string &part : {program_version(), library_versions(), std::string("3 ranks"), std::string("a.prm"), std::string("inertia (Re = 0)")})
     EXPECT_NE(screen.str().find(part), std::string::npos) << part;
   EXPECT_NE(screen.str().find("Ca   = 0.15 "), std::string::npos) << screen.str();
-  EXPECT_NE(screen.str().find("box  = 12 "), std::string::npos) << screen.str();
+  EXPECT_NE(screen.str().find("flow = planar extension\n"), std::string::npos) << screen.str();
+  EXPECT_NE(screen.str().find("box  = 12 x 12 periodic x 12\n"), std::string::npos) << screen.str();
+  EXPECT_EQ(screen.str().find("capsules"), std::string::npos) << screen.str();
   EXPECT_EQ(screen.str().find("with inertia"), std::string::npos) << screen.str();
   run.Re = 0.5;
   log.header(run);
   EXPECT_NE(screen.str().find("Re   = 0.5       rho gamma a^2 / mu: with inertia"), std::string::npos) << screen.str();
+  run.n_capsules = 3;
+  run.has_rate   = false;
+  log.header(run);
+  EXPECT_NE(screen.str().find("N    = 3 capsules"), std::string::npos) << screen.str();
+  EXPECT_NE(screen.str().find("time in mu a^3 / kappa_B.\n"), std::string::npos) << screen.str();
+  EXPECT_NE(screen.str().find("Re   = 0.5       rho kappa_B / (mu^2 a): with inertia"), std::string::npos) << screen.str();
 }
 
 TEST(Log, ColumnNamesEveryTwentySteps)

@@ -6,7 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <iostream>
+#include <thread>
 
 using namespace tanktread;
 
@@ -79,6 +81,34 @@ TEST(MpiErrors, ErrorOfTheFirstRankIsThrownOnAll)
     {
       EXPECT_EQ(error.what(), std::string("a longer message"));
     }
+}
+
+TEST(Meeting, AllComeHoweverLate)
+{
+  const Meeting meeting(MPI_COMM_WORLD);
+  for (unsigned int again = 0; again < 2; ++again)
+    {
+      std::this_thread::sleep_for(std::chrono::milliseconds(100 * this_rank()));
+      EXPECT_TRUE(meeting.all_come());
+    }
+}
+
+TEST(Meeting, OneDoesNotComeInTime)
+{
+  int n_ranks;
+  MPI_Comm_size(MPI_COMM_WORLD, &n_ranks);
+  if (n_ranks == 1)
+    return;
+  // The last rank is somewhere else; the others notice, and go on when it is back.
+  const Meeting meeting(MPI_COMM_WORLD);
+  if (this_rank() < n_ranks - 1)
+    {
+      const double start = MPI_Wtime();
+      EXPECT_FALSE(meeting.all_come(0.1));
+      EXPECT_GE(MPI_Wtime() - start, 0.1);
+      EXPECT_LT(MPI_Wtime() - start, 5.);
+    }
+  MPI_Barrier(MPI_COMM_WORLD);
 }
 
 int

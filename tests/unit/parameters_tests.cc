@@ -61,12 +61,13 @@ namespace
 
 TEST(Parameters, EmptyFileGivesDefaults)
 {
-  const File       file("# nothing\n");
+  const File       file("");
   const Parameters parameters = read_parameters(file.path.string());
   EXPECT_EQ(parameters.scene.flow, Flow::shear);
   EXPECT_EQ(parameters.scene.shear_number, 0.05);
   EXPECT_EQ(parameters.scene.reduced_bending_modulus, 0.);
-  EXPECT_EQ(parameters.scene.box_side, 10.);
+  EXPECT_EQ(parameters.scene.box_side, std::vector<double>{10.});
+  EXPECT_EQ(parameters.placement.positions(), std::vector<Eigen::RowVector3d>{Eigen::RowVector3d::Zero()});
   EXPECT_EQ(parameters.shell_mesh.level, 3u);
   EXPECT_EQ(parameters.shell_mesh.quadrature, 3u);
   EXPECT_EQ(parameters.output.directory, "output/x");
@@ -95,7 +96,7 @@ TEST(Parameters, ValuesReachTheirMembers)
   EXPECT_EQ(parameters.scene.flow, Flow::quiescent);
   EXPECT_EQ(parameters.scene.shear_number, 0.5);
   EXPECT_EQ(parameters.scene.reduced_bending_modulus, 0.25);
-  EXPECT_EQ(parameters.scene.box_side, 8.);
+  EXPECT_EQ(parameters.scene.box_side, std::vector<double>{8.});
   EXPECT_EQ(parameters.scene.end_time, 3.);
   EXPECT_EQ(parameters.scene.scale_modulus, ScaleModulus::shear);
   EXPECT_EQ(parameters.capsule.shape, Shape::oblate);
@@ -109,6 +110,48 @@ TEST(Parameters, ValuesReachTheirMembers)
   EXPECT_EQ(parameters.output.field_interval, 0.);
 }
 
+TEST(Parameters, FlowsAndBoxesReachTheirMembers)
+{
+  const File file("");
+  const auto scene = [&](const std::vector<std::string> &overrides) { return read_parameters(file.path.string(), overrides).scene; };
+  const std::vector<std::pair<std::string, UndisturbedFlow>> flows = {{"shear", simple_shear()},
+                                                                      {"planar extension", planar_extension()},
+                                                                      {"uniaxial extension", uniaxial_extension()},
+                                                                      {"plane Poiseuille", plane_poiseuille(6.)}};
+  const dealii::Point<3>                                     x(0.3, 0.5, 0.7);
+  for (const auto &[name, flow] : flows)
+    {
+      const SceneParameters parameters =
+        scene({"Scene/Flow=" + name, "Scene/Box side=10,8,12", "Scene/Box faces=prescribed,prescribed,prescribed", "Scene/Frame velocity=0.1,0,-0.2"});
+      const UndisturbedFlow read = parameters.undisturbed_flow().amplitude;
+      EXPECT_EQ(word(parameters.flow), name);
+      EXPECT_LT((read.velocity(x) - flow.velocity(x) + dealii::Tensor<1, 3>({0.1, 0., -0.2})).norm(), 1e-15) << name;
+      EXPECT_EQ(read.gradient(x), flow.gradient(x)) << name;
+      EXPECT_EQ(parameters.box().side, (std::array<double, 3>{{10., 8., 12.}}));
+      EXPECT_FALSE(parameters.box().is_periodic(0));
+    }
+  EXPECT_EQ(scene({"Scene/Flow=plane Poiseuille", "Scene/Channel half width=3"}).undisturbed_flow().amplitude.velocity(dealii::Point<3>(0., 0., 3.)).norm(),
+            0.);
+
+  const SceneParameters linear = scene({"Scene/Flow=linear", "Scene/Velocity gradient=0,0,2,0,0,-1,0,0,0", "Scene/Oscillation frequency=3"});
+  const FlowInTime      flow   = linear.undisturbed_flow();
+  EXPECT_EQ(flow.amplitude.linear[0][2], 2.);
+  EXPECT_EQ(flow.amplitude.linear[1][2], -1.);
+  EXPECT_EQ(flow.frequency, 3.);
+  EXPECT_TRUE(linear.box().is_periodic(0) && linear.box().is_periodic(1) && !linear.box().is_periodic(2));
+  EXPECT_TRUE(scene({"Scene/Flow=quiescent", "Scene/Reduced bending modulus=1"}).undisturbed_flow().amplitude.is_zero());
+}
+
+TEST(Parameters, CentresReachTheirMembers)
+{
+  const File file("subsection Capsule\n  set Centres = 1, 2, -3; 40.5,0,0 ;\\\n 1, -2, 3\nend\n");
+  const auto centres = read_parameters(file.path.string()).placement.positions();
+  ASSERT_EQ(centres.size(), 3u);
+  EXPECT_EQ(centres[0], Eigen::RowVector3d(1., 2., -3.));
+  EXPECT_EQ(centres[1], Eigen::RowVector3d(40.5, 0., 0.));
+  EXPECT_EQ(centres[2], Eigen::RowVector3d(1., -2., 3.));
+}
+
 TEST(Parameters, WrongValuesAreRefused)
 {
   expect_error("Scene/Shear number G=0", "allowed: a number > 0");
@@ -116,9 +159,19 @@ TEST(Parameters, WrongValuesAreRefused)
   expect_error("Scene/Viscosity ratio=0.001", "allowed: a number from 0.01 to 100");
   expect_error("Scene/Viscosity ratio=200", "allowed: a number from 0.01 to 100");
   expect_error("Scene/Reynolds number=-1", "allowed: a number >= 0");
-  expect_error("Scene/Flow=poiseuille", "allowed: one of shear, quiescent");
+  expect_error("Scene/Flow=poiseuille", "allowed: one of shear, planar extension, uniaxial extension, linear, plane Poiseuille, quiescent");
   expect_error("Scene/Flow=quiescent", "Scene/Reduced bending modulus is 0");
-  expect_error("Scene/Box side=1", "allowed: a number >= 3");
+  expect_error("Scene/Box side=1", "allowed: 1 to 3 entries separated by commas, each a number >= 3");
+  expect_error("Scene/Box side=10,2,10", "each a number >= 3");
+  expect_error("Scene/Box side=10,10", "has 2 numbers; allowed: one, or three");
+  expect_error("Scene/Box side=10,10,10,10", "allowed: 1 to 3 entries");
+  expect_error("Scene/Box faces=periodic,periodic", "allowed: 3 entries separated by commas, each one of periodic, prescribed");
+  expect_error("Scene/Box faces=periodic,wall,prescribed", "each one of periodic, prescribed");
+  expect_error("Scene/Velocity gradient=1,0,0", "allowed: 9 entries separated by commas, each a number");
+  expect_error("Scene/Frame velocity=1", "allowed: 3 entries separated by commas, each a number");
+  expect_error("Scene/Oscillation frequency=-1", "allowed: a number >= 0");
+  expect_error("Scene/Channel half width=-1", "allowed: a number >= 0");
+  expect_error("Capsule/Centres=0,0", "allowed: entries separated by semicolons, each 3 entries separated by commas, each a number");
   expect_error("Scene/End time=-1", "allowed: a number >= 0");
   expect_error("Scene/Scale modulus=bulk", "allowed: one of Young, shear");
   expect_error("Capsule/Thickness=-0.1", "allowed: a number >= 0");
@@ -136,6 +189,63 @@ TEST(Parameters, MeaninglessPairsAreRefused)
   EXPECT_NE(
     error_of({"Scene/Reynolds number=1", "Solver/Coupling=explicit"}).find("Solver/Coupling is explicit; allowed with Scene/Reynolds number > 0: implicit"),
     std::string::npos);
+}
+
+TEST(Parameters, FlowsThatTheirBoxCannotHaveAreRefused)
+{
+  expect_error("Scene/Box faces=periodic,periodic,periodic",
+               "has 'periodic' across z, but the flow (Scene/Flow = shear) changes along z; allowed there: prescribed");
+  expect_error("Scene/Flow=planar extension", "has 'periodic' across x, but the flow (Scene/Flow = planar extension) changes along x");
+  const std::string lines      = "subsection Scene\nset Flow = linear\nset Velocity gradient = 0,0,0, 0,1,0, 0,0,";
+  const std::string divergence = error_of({}, lines + "-0.5\nend\n"), along_y = error_of({}, lines + "-1\nend\n");
+  EXPECT_NE(divergence.find("x.prm:3: Scene/Velocity gradient has the divergence 0.5 (du_x/dx + du_y/dy + du_z/dz); allowed: 0"), std::string::npos)
+    << divergence;
+  EXPECT_NE(along_y.find("x.prm:2: Scene/Box faces has 'periodic' across y, but the flow (Scene/Flow = linear) changes along y"), std::string::npos) << along_y;
+  EXPECT_EQ(error_of({"Scene/Box faces=periodic,prescribed,prescribed"}, lines + "-1\nend\n"), "");
+
+  const std::string open =
+    error_of({}, "subsection Scene\nset Flow = quiescent\nset Reduced bending modulus = 1\nset Box faces = periodic, periodic, periodic\nend\n");
+  EXPECT_NE(open.find("x.prm:4: Scene/Box faces has 'periodic' across all axes; allowed: 'prescribed' across one at least"), std::string::npos) << open;
+
+  EXPECT_NE(error_of({"Scene/Oscillation frequency=1", "Scene/Frame velocity=1,0,0"}).find("allowed with Scene/Oscillation frequency = 1: 0, 0, 0"),
+            std::string::npos);
+  EXPECT_NE(error_of({"Scene/Oscillation frequency=1", "Scene/Viscosity ratio=2"}).find("allowed with Scene/Viscosity ratio = 2 in this version: 0"),
+            std::string::npos);
+}
+
+TEST(Parameters, CapsulesWhereTheyCannotBeAreRefused)
+{
+  const auto error_at = [](const std::string &centres, const std::vector<std::string> &overrides = {}) {
+    return error_of(overrides, "subsection Capsule\nset Shape = sphere\nset Centres = " + centres + "\nend\n");
+  };
+  const auto expect = [](const std::string &message, const std::string &part) { EXPECT_NE(message.find(part), std::string::npos) << message; };
+  expect(error_at("0,0,0; 3,0,0; -1.9,0.5,0"), "x.prm:3: Capsule/Centres: capsules 1 and 3 overlap by 0.03");
+  expect(error_at("0,0,0; 3,0,0; -1.9,0.5,0"), "allowed: capsules that do not touch, periodic images included.");
+  expect(error_at("4,0,0; -4.1,0,0"), "x.prm:3: Capsule/Centres: capsules 1 and 2 overlap by 0.09");
+  expect(error_at("104,0,0; -4.1,50,0"), "capsules 1 and 2 overlap by 0.09");
+  expect(error_at("0,0,0; 0,0,0"), "capsules 1 and 2 overlap by 0 a");
+  expect(error_at("0,0,4.5"), "x.prm:3: Capsule/Centres: a capsule reaches 0.499");
+  expect(error_at("0,0,4.5"), "beyond a face of the box with prescribed velocity; allowed: inside.");
+  expect(error_at("0,0,0; 3,0,0", {"Scene/Viscosity ratio=2"}),
+         "--set \"Scene/Viscosity ratio=2\": Scene/Viscosity ratio is 2; allowed with 2 capsules in this version: 1");
+  EXPECT_EQ(error_at("0,0,0; 2.1,0,0; 50,4.9,0; 0,2.2,3.9"), "");
+
+  // Too near to its own image for the enriched interface, or through it.
+  const std::vector<std::string> narrow = {"Scene/Box side=3", "Fluid mesh/Coarsest cell=1", "Fluid mesh/Finest cell=0.3"};
+  expect(error_of(narrow), "--set \"Scene/Box side=3\": Scene/Box side is 3 along x; allowed: more than 3.21");
+  expect(error_of(narrow), "the capsule's extent and four finest cells to its periodic image.");
+  EXPECT_EQ(error_of({narrow[0], narrow[1], narrow[2], "Solver/Interface=plain"}), "");
+}
+
+TEST(Parameters, WhatOnlyTheShapeTellsIsRefused)
+{
+  const std::string thick = error_of({}, "subsection Capsule\nset Shape = oblate\nset Aspect ratio = 0.5\nset Thickness = 0.7\nend\n");
+  EXPECT_NE(thick.find("x.prm:4: Capsule/Thickness: got 0.7"), std::string::npos) << thick;
+  EXPECT_NE(thick.find("less than twice the smallest radius of curvature of the initial shape, which is 0.3"), std::string::npos) << thick;
+  const std::string large =
+    error_of({"Solver/Interface=plain"}, "subsection Capsule\nset Shape = ellipsoid\nset Axes = 6, 1, 1\nend\nsubsection Scene\nset Box side = 5\nend\n");
+  EXPECT_NE(large.find("x.prm:6: Scene/Box side is 5 along x; allowed: more than 6."), std::string::npos) << large;
+  EXPECT_NE(large.find("the capsule's extent."), std::string::npos) << large;
 }
 
 TEST(Parameters, ShapeFromFileNeedsAFile)

@@ -60,7 +60,7 @@ TEST(TimeStepping, OrdersOnADecayingMotion)
 TEST(StepHistory, LocalErrorIsWhatTheExactMotionLeavesInTheScheme)
 {
   // For a cubic motion the leading term is all there is (BDF2), for a quadratic one too (backward Euler).
-  const auto x = [](const double t) { return one_point(1. + 2. * t - 3. * t * t + 4. * t * t * t); };
+  const auto x = [](const double t) -> ShellFields { return {one_point(1. + 2. * t - 3. * t * t + 4. * t * t * t)}; };
   const auto v = [](const double t) { return one_point(2. - 6. * t + 12. * t * t); };
 
   TimeParameters parameters;
@@ -70,12 +70,12 @@ TEST(StepHistory, LocalErrorIsWhatTheExactMotionLeavesInTheScheme)
     bdf2.add(t, x(t));
   for (const double length : {0.04, 0.1})
     {
-      const ImplicitStep  step = bdf2.step(length);
-      const ControlPoints left = x(0.3 + length) - step.xhat - step.tau * v(0.3 + length);
+      const ShellSteps    step = bdf2.step(length);
+      const ControlPoints left = x(0.3 + length)[0] - step.xhat[0] - step.tau * v(0.3 + length);
       EXPECT_NEAR(bdf2.local_error(length, x(0.3 + length)), left.norm(), 1e-12);
     }
 
-  const auto y      = [](const double t) { return one_point(1. - 3. * t * t); };
+  const auto y      = [](const double t) -> ShellFields { return {one_point(1. - 3. * t * t)}; };
   parameters.scheme = TimeScheme::backward_euler;
   StepHistory euler(parameters);
   euler.add(0., y(0.));
@@ -84,4 +84,27 @@ TEST(StepHistory, LocalErrorIsWhatTheExactMotionLeavesInTheScheme)
   EXPECT_NEAR(euler.local_error(0.2, y(0.3)), 3. * 0.2 * 0.2 * std::sqrt(3.), 1e-12);
   EXPECT_NEAR(euler.length_factor(4. * parameters.tolerance), 0.45, 1e-12);
   EXPECT_EQ(euler.length_factor(0.), 1.5);
+}
+
+
+TEST(StepHistory, ErrorsOfSeveralCapsulesAreAMeanOverAllControlPoints)
+{
+  // One of three control points moves: a third of the mean square.
+  const auto x = [](const double t) -> ShellFields {
+    ControlPoints second = ControlPoints::Constant(2, 3, 1. + t * t * t);
+    second.row(1).setConstant(5.);
+    return {one_point(7.), second};
+  };
+  const auto  alone = [](const double t) -> ShellFields { return {one_point(1. + t * t * t)}; };
+  StepHistory together{TimeParameters()}, one{TimeParameters()};
+  for (const double t : {0.1, 0.25, 0.3})
+    {
+      together.add(t, x(t));
+      one.add(t, alone(t));
+    }
+  EXPECT_NEAR(together.local_error(0.1, x(0.4)), one.local_error(0.1, alone(0.4)) / std::sqrt(3.), 1e-14);
+  const ShellSteps step = together.step(0.1);
+  ASSERT_EQ(step.xhat.size(), 2u);
+  EXPECT_EQ(step.tau, one.step(0.1).tau);
+  EXPECT_EQ(step.xhat[1].row(0), one.step(0.1).xhat[0].row(0));
 }

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: exact statements about what the solver makes of the shells: forces and unknowns over the ranks, factors, the implicit operators, the motion in a step.
+
+#include <gtest/gtest.h>
+#include <tanktread/base/exceptions.h>
+#include <tanktread/surface/surface_operators.h>
+
+#include "small_scene.h"
+
+#include <cmath>
+#include <iostream>
+
+using namespace tanktread;
+
+namespace
+{
+  SparseMatrix
+  random_blocks(const SubdivisionSurface &surface, const double size)
+  {
+    SparseMatrix matrix = surface.pattern().block_matrix();
+    for (Eigen::Index k = 0; k < matrix.nonZeros(); ++k)
+      matrix.valuePtr()[k] = size * std::sin(1000. * k);
+    return matrix;
+  }
+
+  ControlPoints
+  smooth_field(const ControlPoints &x)
+  {
+    ControlPoints result(x.rows(), 3);
+    for (Eigen::Index i = 0; i < x.rows(); ++i)
+      result.row(i) << std::sin(2. * x(i, 1)), std::cos(x(i, 2)), std::sin(x(i, 0) + x(i, 2));
+    return result;
+  }
+} // namespace
+
+
+TEST(DistributedShell, SumsTheFacesOfAllRanks)
+{
+  StartedScene scene(small_scene({5., 0.2}, 1., ellipsoid(1.3, 1.1, 1.), tight(1e-8, 1e-8)));
+  scene.x().col(0) += 0.1 * scene.x().col(2);
+  const DistributedShell &shell   = scene.elasticity();
+  const Shell            &serial  = scene.capsule().shell();
+  const unsigned int      n_faces = shell.faces().size();
+  EXPECT_EQ(dealii::Utilities::MPI::sum(n_faces, MPI_COMM_WORLD), scene.capsule().surface().n_faces());
+  const Shell::Energy e = shell.energy(scene.x()), serial_e = serial.energy(scene.x());
+  EXPECT_NEAR(e.membrane, serial_e.membrane, 1e-13 * serial_e.membrane);
+  EXPECT_NEAR(e.bending, serial_e.bending, 1e-13 * serial_e.bending);
+  ControlPoints f, serial_f;
+  SparseMatrix  K, serial_K;
+  for (unsigned int again = 0; again < 2; ++again) // the second time with a matrix that has the pattern
+    {
+      shell.force_and_tangent(scene.x(), f, K);
+      serial.force_and_tangent(scene.x(), serial_f, serial_K);
+      EXPECT_LT((f - serial_f).norm(), 1e-13 * serial_f.norm());
+      EXPECT_LT((shell.force(scene.x()) - serial_f).norm(), 1e-13 * serial_f.norm());
+      EXPECT_LT((K.coeffs() - serial_K.coeffs()).matrix().norm(), 1e-13 * serial_K.norm());
+    }
+}
+
+
+TEST(DistributedShell, FailsOnAllRanksAlike)
+{
+  StartedScene scene(small_scene({5., 0.2}, 1., {}, tight(1e-8, 1e-8)));
+  scene.x()(3, 1) = std::nan(""); // in the faces of some ranks only
+  ControlPoints f;
+  SparseMatrix  K;
+  EXPECT_THROW(scene.elasticity().force(scene.x()), NumericalError);
+  EXPECT_THROW(scene.elasticity().energy(scene.x()), NumericalError);
+  EXPECT_THROW(scene.elasticity().force_and_tangent(scene.x(), f, K), NumericalError);
+}
+
+
+TEST(ShellLayout, UnknownsOfAllCapsulesComeBackOnAllRanks)
+{
+  StartedScene       scene(small_scene({5., 0.2}, 1., {}, tight(1e-8, 1e-8)));
+  const unsigned int n_ranks = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+  for (const unsigned int n_capsules : {1u, 3u, 5u})
+    {
+      const ShellLayout layout(n_capsules, 7, MPI_COMM_WORLD);
+      FluidBlockVector  vector = layout.vector(scene.fluid().space());
+      EXPECT_EQ(vector.block(shell_block).size(), n_capsules * (1 + 3 * 7));
+      const auto force = [](const unsigned int c) -> ControlPoints { return ControlPoints::Constant(7, 3, 0.5 * c) + ControlPoints::Identity(7, 3); };
+      for (unsigned int c = 0; c < n_capsules; ++c)
+        {
+          EXPECT_EQ(dealii::Utilities::MPI::sum(unsigned(layout.owns(c)), MPI_COMM_WORLD), 1u);
+          EXPECT_LT(layout.owner(c), n_ranks);
+          layout.set(vector, c, 10. + c, force(c));
+        }
+      const std::vector<ShellUnknowns> unknowns = layout.unknowns(vector);
+      ASSERT_EQ(unknowns.size(), n_capsules);
+      for (unsigned int c = 0; c < n_capsules; ++c)
+        {
+          EXPECT_EQ(unknowns[c].pressure_jump, 10. + c);
+          EXPECT_EQ(unknowns[c].force, force(c));
+        }
+    }
+}
+
+
+TEST(BlockFactorisation, Solves)
+{
+  StartedScene              scene(small_scene({5., 0.2}, 1., {}, tight(1e-8, 1e-8)));
+  const SubdivisionSurface &surface = scene.capsule().surface();
+  BlockFactorisation        factors;
+  SparseMatrix              matrix = random_blocks(surface, 1.);
+  for (const double shift : {20., 0.5}) // dominated by the diagonal, and not
+    {
+      matrix += SparseMatrix(shift * Eigen::VectorXd::Ones(matrix.rows()).asDiagonal().toDenseMatrix().sparseView());
+      const Eigen::VectorXd b = flat(smooth_field(scene.x())), x = factors.solve((factors.factorise(matrix, "It"), b));
+      EXPECT_LT((matrix * x - b).norm(), 1e-9 * b.norm());
+    }
+  try
+    {
+      factors.factorise(surface.pattern().block_matrix(), "It");
+      ADD_FAILURE();
+    }
+  catch (const NumericalError &error)
+    {
+      EXPECT_STREQ(error.what(), "It is singular.");
+    }
+}
+
+
+TEST(ImplicitShells, AreKeptWhileTheyServe)
+{
+  StartedScene        scene(small_scene({5., 0.2}, 1., {}, tight(1e-8, 1e-8)));
+  const ShellLayout   layout(1, scene.capsule().n_control_points(), MPI_COMM_WORLD);
+  SolverMemory        memory;
+  ImplicitShells      implicit_shells(layout, memory);
+  const SparseMatrix &Z = scene.capsule().mass();
+  const SparseMatrix  K = random_blocks(scene.capsule().surface(), 1e-3);
+  EXPECT_FALSE(implicit_shells.serves(0.1));
+  Eigen::Matrix3d g = Eigen::Matrix3d::Zero();
+  g(0, 2)           = 3.;
+  implicit_shells.renew({{Z, K, g}}, 0.1);
+  for (const auto &[tau, serves] : {std::pair<double, bool>{0.1, true}, {0.149, true}, {0.151, false}, {0.067, true}, {0.066, false}})
+    EXPECT_EQ(implicit_shells.serves(tau), serves) << tau;
+
+  // Z_tau (Z_tau + tau K)^{-1} with Z_tau = Z (1 - tau g), on the rank that owns the capsule
+  const ControlPoints force = smooth_field(scene.x()), velocity = implicit_shells.velocity(0, force);
+  if (layout.owns(0))
+    {
+      const ControlPoints resistance = Z * velocity * (Eigen::Matrix3d::Identity() - 0.1 * g).transpose();
+      EXPECT_LT((resistance + nodal(0.1 * (K * flat(velocity))) - force).norm(), 1e-12 * force.norm());
+      EXPECT_LT((implicit_shells.damped(0, force) - resistance).norm(), 1e-12 * force.norm());
+    }
+  else
+    {
+      EXPECT_EQ(velocity.norm() + implicit_shells.damped(0, force).norm(), 0.);
+    }
+
+  implicit_shells.watch({true, 10, 1., 1e-2});
+  implicit_shells.watch({true, 24, 1., 1e-4}); // 22 + 1 allowed, but 5 a decade
+  EXPECT_FALSE(implicit_shells.serves(0.1));
+  implicit_shells.renew({{Z, K, g}}, 0.1);
+  implicit_shells.watch({true, 10, 1., 1e-2});
+  implicit_shells.watch({true, 22, 1., 1e-4});
+  EXPECT_TRUE(implicit_shells.serves(0.1));
+  implicit_shells.discard();
+  EXPECT_FALSE(implicit_shells.serves(0.1));
+  EXPECT_EQ(implicit_shells.n_renewals(), 2u);
+
+  SparseMatrix minus_Z = scene.capsule().surface().pattern().block_matrix();
+  add_for_three_components(Z, minus_Z);
+  minus_Z *= -1.;
+  EXPECT_THROW(implicit_shells.renew({{Z, minus_Z, Eigen::Matrix3d::Zero()}}, 1.), NumericalError);
+  EXPECT_FALSE(implicit_shells.serves(1.));
+}
+
+
+TEST(ShellMotion, IsAsAccurateAsWanted)
+{
+  StartedScene        scene(small_scene({5., 0.2}, 1., {}, tight(1e-8, 1e-8)));
+  const ControlPoints f = scene.capsule().mass() * smooth_field(scene.x());
+  scene.move_points();
+  VelocityGradients gradients(scene.coupling().transfer(0).n_points(), 9);
+  for (Eigen::Index q = 0; q < gradients.rows(); ++q)
+    gradients.row(q) << 0.5, 0.3, 1., std::sin(0.1 * q), -0.5, 0.4, 0.2, std::cos(0.1 * q), 0.;
+  SparseMatrix gamma;
+  scene.coupling().gradient_matrix(0, gradients, gamma);
+  const ShellMotion exact(scene.capsule(), 0.1 * gamma, 0.);
+  EXPECT_EQ(exact.n_terms(), 0u);
+  const ControlPoints dx = exact.solve(f);
+  EXPECT_LT((exact.times(dx) - f).norm(), 1e-12 * f.norm());
+
+  unsigned int n_terms = 1;
+  for (const double accuracy : {1e-2, 1e-4, 1e-6})
+    {
+      const ShellMotion motion(scene.capsule(), 0.1 * gamma, accuracy);
+      EXPECT_GT(motion.n_terms(), n_terms);
+      n_terms            = motion.n_terms();
+      const double error = (motion.solve(f) - dx).norm() / dx.norm();
+      if (is_root())
+        std::cout << "accuracy " << accuracy << ": " << n_terms << " terms, error on a smooth field " << error << std::endl;
+      EXPECT_LT(error, accuracy);
+      EXPECT_LT((motion.solve(2. * f + scene.x()) - 2. * motion.solve(f) - motion.solve(scene.x())).norm(), 1e-13 * dx.norm());
+    }
+  EXPECT_EQ(ShellMotion(scene.capsule(), 5. * gamma, 1e-2).n_terms(), 0u); // the series diverges
+}
