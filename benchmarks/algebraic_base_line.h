@@ -30,7 +30,8 @@ namespace tanktread
 
 
   /**
-   * Spaces, operator and multigrid on the mesh of the scene, made anew, and a solve from zero. The mesh grows together with the multigrid; what p4est and deal.II take to make
+   * Spaces, operator and multigrid on the mesh of the scene, made anew, and a solve from zero. The mesh grows together with the multigrid; what p4est and
+   * deal.II take to make
    * the same mesh alone is `mesh` (s), and not part of the set-up. Collective, like all that follows.
    */
   inline SolverCost

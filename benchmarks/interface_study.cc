@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: errors of the flow that given forces on a shell make, plain and enriched, and what it costs.
 //
-// Usage: interface_study [--scenes sphere2,...] [--cells 32,64,128] [--interfaces plain,enriched] [--box 40] [--coarsest 2.5] [--band 1.5] [--grading 0] [--finer-shell 0]
+// Usage: interface_study [--scenes sphere2,...] [--cells 32,64,128] [--interfaces plain,enriched] [--box 40] [--coarsest 2.5] [--band 1.5] [--grading 0]
+// [--finer-shell 0]
 //                        [--repeat 3]
 // One line of CSV a scene, interface and mesh on the standard output. h = 10a/cells, control mesh of level log2(cells/8) and `finer-shell` more. Scenes:
 //   sphere2, sphere4   sphere off the centre, tractions of degree 2 and 4; error against the exact flow in unbounded liquid
@@ -9,7 +10,8 @@
 //   biconcave          biconcave disk, tilted; smooth traction
 //   steady             sphere sheared at G = 0.2, khat = 0.04 until it is nearly steady; smooth traction (waves)
 //   periodic           sphere in the edge of a box of 10a, cut into four by the periodic faces; traction of degree 2
-// Errors of all but the first two are differences from two finer meshes, 10a/128 and 10a/256 (enriched, graded), extrapolated with second order on the same control mesh; with each control
+// Errors of all but the first two are differences from two finer meshes, 10a/128 and 10a/256 (enriched, graded), extrapolated with second order on the same
+// control mesh; with each control
 // mesh of `ellipsoid` and `biconcave` a line `shell` says how far that is from the one of level 4.
 
 #include <deal.II/base/mpi.h>

@@ -60,12 +60,15 @@ namespace
   // ---- Kernels ----
 
   /**
-   * Operations a cell for all three components; multiplications by 0 and 1 and those with the unused fourth number do not count. A cell has 9 lines of three nodes along each axis.
+   * Operations a cell for all three components; multiplications by 0 and 1 and those with the unused fourth number do not count. A cell has 9 lines of three
+   * nodes along each axis.
    *
    * Laplace: to_modes() and from_modes() take 6 each, 27 lines; two multiplications a mode.
-   * Divergence: a line of values takes 2 x 2, of derivatives 2 x 4; there are 9 lines along x, 6 along y, 4 along z, and each component has derivatives along one of them. Then
+   * Divergence: a line of values takes 2 x 2, of derivatives 2 x 4; there are 9 lines along x, 6 along y, 4 along z, and each component has derivatives along
+   * one of them. Then
    * the sum of the components, the factor and the sum over the cells. Its transpose: 2 and 6 a line.
-   * Strain form: three nodes of a line to its three points take 10 for values, 11 for derivatives, and so does the transpose; 8 sweeps of 9 lines each way, 3 of them
+   * Strain form: three nodes of a line to its three points take 10 for values, 11 for derivatives, and so does the transpose; 8 sweeps of 9 lines each way, 3
+   * of them
    * derivatives; adding up two sweeps; at a point the factor, and sum and product for nine derivatives.
    * Inertia: 9 sweeps for value and gradient of a field, 3 of them derivatives, and 3 back; at a point the wind, v . grad u, u . grad u_inf, mass and factors,
    * as for a simple shear. Its derivative does all but the way back for two fields, and v . grad u twice.

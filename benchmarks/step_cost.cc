@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: what solves and time steps cost, mesh by mesh.
 //
-// Usage: mpirun -np N step_cost [--cells 32,64,128] [--dt 0.1] [--ml]. Markdown tables on the standard output, progress on the standard error. A neo-Hookean sphere with
-// bending (G = 0.2, khat = 0.04) in shear, box 10 a, h = 10 a/cells, shell of level log2(cells/8). With --ml the Stokes solves alone, compared with assembled matrices and
+// Usage: mpirun -np N step_cost [--cells 32,64,128] [--dt 0.1] [--ml]. Markdown tables on the standard output, progress on the standard error. A neo-Hookean
+// sphere with
+// bending (G = 0.2, khat = 0.04) in shear, box 10 a, h = 10 a/cells, shell of level log2(cells/8). With --ml the Stokes solves alone, compared with assembled
+// matrices and
 // algebraic multigrid.
 
 #include <deal.II/base/mpi.h>
@@ -95,7 +97,8 @@ namespace
 
 
   /**
-   * A linear solve of Newton's method for the shell x, around which the mesh is, in the undisturbed flow; the loads are those of the deformed shell. Points are frozen, as
+   * A linear solve of Newton's method for the shell x, around which the mesh is, in the undisturbed flow; the loads are those of the deformed shell. Points are
+   * frozen, as
    * the solver does it so far from a solution. Returns the set-up of LinearisedShells (s).
    */
   double

@@ -27,7 +27,10 @@ namespace tanktread
     }
 
 
-    /** v = matrix of the strain form without `least` (grad u^T, grad v), times v. @param viscosity 27 numbers for the first of the cubes, those of the others follow. */
+    /**
+     * v = matrix of the strain form without `least` (grad u^T, grad v), times v. @param viscosity 27 numbers for the first of the cubes, those of the others
+     * follow.
+     */
     template <typename Number, int n_cubes>
     TANKTREAD_INLINE void
     multiply_by_viscous(Lanes<Number, n_cubes> *v, const Lanes<Number, n_cubes> h, const Number *viscosity, const Number least)

@@ -4,6 +4,7 @@
 #include <Eigen/SparseCholesky>
 #include <tanktread/base/exceptions.h>
 #include <tanktread/base/mpi_errors.h>
+#include <tanktread/base/output_file.h>
 #include <tanktread/fluid/field_output.h>
 #include <tanktread/simulation/results.h>
 #include <tanktread/surface/capsule_shape.h>
@@ -12,7 +13,6 @@
 #include <tanktread/surface/surface_operators.h>
 
 #include <cmath>
-#include <fstream>
 #include <iomanip>
 #include <sstream>
 
@@ -227,8 +227,7 @@ namespace tanktread
   Results::write_summary(const std::string &outcome, const std::vector<MotionSummary> &capsules) const
   {
     on_first_rank(communicator_, [&] {
-      const std::string name = folder_ + "/summary.csv";
-      std::ofstream     file(name);
+      std::ostringstream file;
       file << "quantity,value\noutcome," << outcome << '\n' << std::setprecision(10);
       for (std::size_t c = 0; c < capsules.size(); ++c)
         {
@@ -237,8 +236,7 @@ namespace tanktread
           for (const auto &[quantity, value] : summary_row(capsules[c]))
             file << quantity << number << ',' << value << '\n';
         }
-      if (!(file << std::flush))
-        throw InputError("cannot write \"" + name + "\"");
+      replace_file(folder_ + "/summary.csv", file.str());
     });
   }
 

@@ -6,6 +6,7 @@
 
 #include <tanktread/base/exceptions.h>
 #include <tanktread/base/mpi_errors.h>
+#include <tanktread/base/output_file.h>
 #include <tanktread/base/output_folder.h>
 #include <tanktread/fluid/field_transfer.h>
 #include <tanktread/simulation/scene_description.h>
@@ -13,7 +14,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <sstream>
 #include <utility>
 
@@ -52,6 +52,10 @@ namespace tanktread
       else
         run.included.push_back("variable viscosity (ratio " + number(parameters.scene.viscosity_ratio) +
                                ": strain form, cells that the shell cuts integrated part by part)");
+      if (parameters.capsule.prestress != 0.)
+        run.included.push_back("prestress (inflation by " + number(parameters.capsule.prestress) + ")");
+      if (parameters.capsule.stress_free != StressFreeShape::initial)
+        run.included.push_back("a stress-free shape other than the initial one");
       if (parameters.shell.thickness == 0.)
         run.left_out.push_back("shell thickness (0)");
       if (parameters.solver.interface == Interface::plain)
@@ -130,9 +134,7 @@ namespace tanktread
     on_first_rank(communicator_, [&] {
       moved_to = prepare_output_folder(folder);
       log_.open(folder + "/log.txt");
-      std::ofstream file(folder + "/used_parameters.prm");
-      if (!(file << parameters_.used << std::flush))
-        throw InputError("Output/Directory: cannot write '" + folder + "/used_parameters.prm'.");
+      replace_file(folder + "/used_parameters.prm", parameters_.used);
     });
     log_.header(description(parameters_, dealii::Utilities::MPI::n_mpi_processes(communicator_)));
     if (!moved_to.empty())

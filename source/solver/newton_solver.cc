@@ -164,7 +164,8 @@ namespace tanktread
         capsule.x             = dx0[c] + shells[c].displacement(moments[c]);
         capsule.volume_shift  = shells[c].volume_shift(moments[c], r.capsules[c].x, capsule.x);
         capsule.force         = shells[c].force_change(unknowns[c].force, capsule.x);
-        // All ranks have computed this alike up to rounding, which differs between kinds of processors: one answer for all, so that they take the same decisions.
+        // All ranks have computed this alike up to rounding, which differs between kinds of processors: one answer for all, so that they take the same
+        // decisions.
         MPI_Bcast(capsule.x.data(), capsule.x.size(), MPI_DOUBLE, 0, layout_.communicator());
         MPI_Bcast(capsule.force.data(), capsule.force.size(), MPI_DOUBLE, 0, layout_.communicator());
         MPI_Bcast(&capsule.volume_shift, 1, MPI_DOUBLE, 0, layout_.communicator());
@@ -236,7 +237,8 @@ namespace tanktread
   bool
   NewtonSolver::follow_shells(State &state, Progress &progress)
   {
-    // Positions within a small part of a cell, which shrinks with the solver's tolerance, are as good as any. A node of the fluid that changes sides makes the residual jump, and now and
+    // Positions within a small part of a cell, which shrinks with the solver's tolerance, are as good as any. A node of the fluid that changes sides makes the
+    // residual jump, and now and
     // then shell and node would chase each other for ever: then a larger part has to do.
     constexpr unsigned int patience = 8;
     const double h = level_.finest_cell(), tolerance = progress.n_moves < patience ? std::min(0.002 * h, 100. * parameters_.newton_tolerance) : 0.02 * h;

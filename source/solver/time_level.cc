@@ -15,7 +15,10 @@ namespace tanktread
 {
   namespace
   {
-    /** Integral of 2 eps : eps of the undisturbed flow over the inside of a shell, by the divergence theorem for each degree of the polynomial about the shell's middle. */
+    /**
+     * Integral of 2 eps : eps of the undisturbed flow over the inside of a shell, by the divergence theorem for each degree of the polynomial about the shell's
+     * middle.
+     */
     double
     undisturbed_dissipation(const UndisturbedFlow &flow, const ShellConfiguration &shell)
     {

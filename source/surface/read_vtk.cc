@@ -126,7 +126,8 @@ namespace tanktread
     }
 
     /**
-     * After POLYGONS or CELLS. Up to version 4 each cell stands behind its number of points; later the offsets of all cells, one more than there are cells, stand
+     * After POLYGONS or CELLS. Up to version 4 each cell stands behind its number of points; later the offsets of all cells, one more than there are cells,
+     * stand
      * before them.
      */
     void

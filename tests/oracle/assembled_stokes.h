@@ -32,7 +32,8 @@ namespace tanktread::oracle
   using ComponentVector = dealii::LinearAlgebra::distributed::BlockVector<double>;
 
   /**
-   * (grad u, grad v) - (p, div v), -(q, div u) as Trilinos matrices: one scalar matrix for all three velocity components, three divergences. Rows and columns of constrained
+   * (grad u, grad v) - (p, div v), -(q, div u) as Trilinos matrices: one scalar matrix for all three velocity components, three divergences. Rows and columns
+   * of constrained
    * degrees of freedom are condensed; those of the velocities carry a positive diagonal entry. Of NodeSpace it knows only in the two conversions.
    */
   class AssembledStokes

@@ -22,7 +22,8 @@ namespace tanktread::oracle
 
 
   /**
-   * Takes each cut cell as several, inside of each shell that cuts it and outside of all, with the quadratic functions that w is there and the matrices of these parts; amplitudes are made of averages over all points at once.
+   * Takes each cut cell as several, inside of each shell that cuts it and outside of all, with the quadratic functions that w is there and the matrices of
+   * these parts; amplitudes are made of averages over all points at once.
    * The capsules must not cross the periodic faces.
    */
   class EnrichedPower
@@ -255,7 +256,8 @@ namespace tanktread::oracle
           for (const auto &[q, x] : found->second)
             for (int a = 0; a < 27; ++a)
               power_.force += scene_.weights(c)[q] * quadratic(x, a) * shells_[c].density.row(q).dot(outside.w.row(a) - u.row(a));
-      // All as if it were outside, without the dissipation of u_h by the same matrices: they are in single precision, and a common value of the nodes adds their rounding to all.
+      // All as if it were outside, without the dissipation of u_h by the same matrices: they are in single precision, and a common value of the nodes adds
+      // their rounding to all.
       add_part(whole_cell_matrices(), outside, 1.);
       add_part(whole_cell_matrices(), {u, Vertices::Zero()}, -1.);
       for (const Cut &cut : cuts)

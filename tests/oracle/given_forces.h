@@ -83,7 +83,8 @@ namespace tanktread::oracle
     };
 
     /**
-     * Collective. @param F nodal forces of each shell. @param tolerance relative residual. @param n_sweeps of the viscous part of the jumps, after a first solve without. Throws NumericalError if the linear
+     * Collective. @param F nodal forces of each shell. @param tolerance relative residual. @param n_sweeps of the viscous part of the jumps, after a first
+     * solve without. Throws NumericalError if the linear
      * solver does not get there in 300 iterations.
      */
     Flow
@@ -179,7 +180,8 @@ namespace tanktread::oracle
 
 
   /**
-   * A traction of degree l = 2 or 4 about an axis on the unit sphere, at points X, and the velocity that it makes in unbounded liquid of viscosity 1. With Y = P_l(axis . r), grad Y + l Y r
+   * A traction of degree l = 2 or 4 about an axis on the unit sphere, at points X, and the velocity that it makes in unbounded liquid of viscosity 1. With Y =
+   * P_l(axis . r), grad Y + l Y r
    * is an eigenfunction of the single layer with the value (l + 1)/((2l + 1)(2l - 1)); its normal part is about as large as the tangential one.
    */
   inline std::pair<ControlPoints, ControlPoints>

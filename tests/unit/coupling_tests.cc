@@ -138,7 +138,8 @@ TEST(Coupling, MotionOfPointsIsTheDerivative)
 
 TEST(Coupling, InterpolatesLinearVelocitiesExactly)
 {
-  // u = (z, 0, 0) at the nodes off the walls: in every cell that the shell cuts it is the linear field, which the surface reproduces, so J u is u at the control points.
+  // u = (z, 0, 0) at the nodes off the walls: in every cell that the shell cuts it is the linear field, which the surface reproduces, so J u is u at the
+  // control points.
   Example s;
   s.u                          = nodal_velocity(s.space(), [](const dealii::Point<3> &x) { return std::array<double, 3>{{x[2], 0., 0.}}; });
   const ControlPoints velocity = s.interpolated(s.u);

@@ -64,7 +64,8 @@ namespace
 
 
   /**
-   * The same velocity with another viscosity inside. There the flow is that of the potential r^l Y, without pressure; outside r^{-l} times a combination of grad Y and Y r is added to that of r^{-l-1} Y.
+   * The same velocity with another viscosity inside. There the flow is that of the potential r^l Y, without pressure; outside r^{-l} times a combination of
+   * grad Y and Y r is added to that of r^{-l-1} Y.
    */
   void
   set_exact_traction(const Example &scene, const int l, ControlPoints &traction)

@@ -252,7 +252,8 @@ namespace
   };
 
   /**
-   * A solution of the Navier-Stokes equations with a body force in a box of side 4: u_x = g dS/dz, u_z = -g dS/dx, u_y = g T with products of waves S and T, S and dS/dz zero at
+   * A solution of the Navier-Stokes equations with a body force in a box of side 4: u_x = g dS/dz, u_z = -g dS/dx, u_y = g T with products of waves S and T, S
+   * and dS/dz zero at
    * the walls, T too and independent of y, so that div u = 0. g is a function of time.
    */
   class Manufactured

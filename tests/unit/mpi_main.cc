@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Part of Tanktread: main() of the tests that run on several ranks. The first rank reports all tests, the others what fails there; every rank ends with the result of all.
+// Part of Tanktread: main() of the tests that run on several ranks. The first rank reports all tests, the others what fails there; every rank ends with the
+// result of all.
 
 #include <deal.II/base/mpi.h>
 

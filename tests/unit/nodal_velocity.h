@@ -11,7 +11,10 @@
 
 namespace tanktread
 {
-  /** Velocity vector with the values of `formula`, Point<3> -> std::array<double, 3>, at the free nodes. It has to be periodic in x and y; at the walls the velocity is zero. */
+  /**
+   * Velocity vector with the values of `formula`, Point<3> -> std::array<double, 3>, at the free nodes. It has to be periodic in x and y; at the walls the
+   * velocity is zero.
+   */
   template <typename Formula>
   FluidBlockVector
   nodal_velocity(const TaylorHoodSpace &space, const Formula &formula)

@@ -91,8 +91,10 @@ TEST(ParticleStress, APressureJumpHasNoPartInIt)
 
 TEST(ParticleStress, IsWhatTheWallsFeel)
 {
-  // Tested with the velocity (g(z), 0, 0), g = z near the capsule and linear from there to zero at the walls, the discrete momentum balance says what the mean velocity of the disturbance in two planes
-  // on either side of the capsule is: -S_xz (1 - 2 z_1 / l) / (mu l^2 l) above, the opposite below. It is the slope of the mean flow to the walls, the stress on these.
+  // Tested with the velocity (g(z), 0, 0), g = z near the capsule and linear from there to zero at the walls, the discrete momentum balance says what the mean
+  // velocity of the disturbance in two planes
+  // on either side of the capsule is: -S_xz (1 - 2 z_1 / l) / (mu l^2 l) above, the opposite below. It is the slope of the mean flow to the walls, the stress
+  // on these.
   const ShearedCapsule capsule;
   const double         side = 5., z_1 = 1.25, cell = 0.3125;
   SceneDescription     description = small_scene({5., 0.2}, 1., {}, tight(1e-9, 1e-9), side, cell);

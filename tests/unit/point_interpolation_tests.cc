@@ -143,7 +143,8 @@ TEST(CellLocator, FindsTheCellsDealiiFinds)
 
 TEST(CellLocator, CellAndPositionAgreeWithinRoundingOfFaces)
 {
-  // Symmetric capsules have points within rounding of faces. Whichever cell is taken, the position in it must be that of the point; a box whose cells are not powers of
+  // Symmetric capsules have points within rounding of faces. Whichever cell is taken, the position in it must be that of the point; a box whose cells are not
+  // powers of
   // two makes formulas that round differently disagree.
   for (const double box : {10., 7.3})
     {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Part of Tanktread: exact statements about what the solver makes of the shells: forces and unknowns over the ranks, factors, the implicit operators, the motion in a step.
+// Part of Tanktread: exact statements about what the solver makes of the shells: forces and unknowns over the ranks, factors, the implicit operators, the
+// motion in a step.
 
 #include <gtest/gtest.h>
 #include <tanktread/base/exceptions.h>

@@ -41,7 +41,10 @@ namespace tanktread
   }
 
 
-  /** One capsule of 162 control points in shear, off the planes of symmetry, so that no quadrature point lies on a face of a fluid cell, where velocity gradients jump. Finest cell 10a/32, box 5a or 10a. */
+  /**
+   * One capsule of 162 control points in shear, off the planes of symmetry, so that no quadrature point lies on a face of a fluid cell, where velocity
+   * gradients jump. Finest cell 10a/32, box 5a or 10a.
+   */
   inline SceneDescription
   small_scene(const ShellModuli            &moduli,
               const double                  shear_rate,

@@ -63,7 +63,8 @@ namespace
   }
 
   /**
-   * Iterations of a linear solve to 1e-6 at the state of the scene with points frozen, as the solver does it far from a solution; the forces are those of the shell `serial`.
+   * Iterations of a linear solve to 1e-6 at the state of the scene with points frozen, as the solver does it far from a solution; the forces are those of the
+   * shell `serial`.
    */
   unsigned int
   iterations(StartedScene &scene, const Shell &serial, const Tangent tangent, const double tau)
@@ -185,7 +186,8 @@ TEST(Iterations, SteadyCapsule)
 
 TEST(Iterations, BiconcaveDisk)
 {
-  // The two sides of the disk are 0.2 a apart in the middle, of which Z knows nothing: measured up to 44. (A sphere or an oblate spheroid of the same material: 37.)
+  // The two sides of the disk are 0.2 a apart in the middle, of which Z knows nothing: measured up to 44. (A sphere or an oblate spheroid of the same material:
+  // 37.)
   StartedScene scene(described(skalak(ReferenceCurvature::flat), {5., 0.2}, Shape::biconcave));
   scene.move_points();
   for (const Stiffness &stiffness : stiffnesses)

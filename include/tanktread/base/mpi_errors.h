@@ -24,7 +24,10 @@ namespace tanktread
   void
   on_all_ranks(MPI_Comm communicator, const std::function<void()> &work);
 
-  /** A place where ranks that have failed find out whether all of them have, so that they may go on together, or whether the others wait for them in some collective call. */
+  /**
+   * A place where ranks that have failed find out whether all of them have, so that they may go on together, or whether the others wait for them in some
+   * collective call.
+   */
   class Meeting
   {
   public:

@@ -7,7 +7,8 @@
 namespace tanktread
 {
   /**
-   * A 3-vector and a fourth number in two registers of two, which every 64-bit processor has. Compilers leave arrays of four numbers that are summed up in loops in
+   * A 3-vector and a fourth number in two registers of two, which every 64-bit processor has. Compilers leave arrays of four numbers that are summed up in
+   * loops in
    * memory; these stay in registers.
    */
   class Vector4

@@ -23,8 +23,10 @@ namespace tanktread
    *
    * so the power f . J u = (R f) . u agrees to rounding. Loads of several shells add.
    *
-   * With Interface::enriched R f has a part in the continuity equation too, J acts on the pressure, and the shells' own forces move them by Q f in addition, Q symmetric (ShellJumps). The
-   * enrichment is for P f = f - v (m . f)/(m . v) of each shell only, v its volume gradient and m = M^{-1} v: a constant normal force is the business of its indicator pressure.
+   * With Interface::enriched R f has a part in the continuity equation too, J acts on the pressure, and the shells' own forces move them by Q f in addition, Q
+   * symmetric (ShellJumps). The
+   * enrichment is for P f = f - v (m . f)/(m . v) of each shell only, v its volume gradient and m = M^{-1} v: a constant normal force is the business of its
+   * indicator pressure.
    *
    * Nodal fields are NP x 3 for each capsule and replicated on all ranks; what belongs to a point is on the rank of its fluid cell
    * alone, so sums over points end in one sum over the ranks. Calls that take fluid vectors or velocity gradients are collective.
@@ -93,7 +95,10 @@ namespace tanktread
     void
     extend(const ShellFields &f, ExtendedForces &forces) const;
 
-    /** Extended forces of the shells in the whole flow: with what another viscosity inside and the undisturbed flow contribute, which is not linear in f. See JumpEnrichment. Collective. */
+    /**
+     * Extended forces of the shells in the whole flow: with what another viscosity inside and the undisturbed flow contribute, which is not linear in f. See
+     * JumpEnrichment. Collective.
+     */
     void
     extend_whole(const ShellFields &f, ExtendedForces &forces) const;
 
@@ -123,7 +128,10 @@ namespace tanktread
     ShellFields
     interpolate(const FluidBlockVector &fields, const ExtendedForces &f) const;
 
-    /** Velocity of the control points of `shells` in the undisturbed flow: its linear part there, which is exact, and M^{-1} S^T W of the rest at their points. Collective. */
+    /**
+     * Velocity of the control points of `shells` in the undisturbed flow: its linear part there, which is exact, and M^{-1} S^T W of the rest at their points.
+     * Collective.
+     */
     ShellFields
     undisturbed_velocity(const UndisturbedFlow &flow, const ShellConfigurations &shells) const;
 
@@ -136,7 +144,8 @@ namespace tanktread
     density(const ShellFields &f) const;
 
     /**
-     * Adds to the pressure of `fields` what it jumps where the shells with nodal forces f have passed a vertex of the mesh since `sides` (of each shell), which become the sides at move(). Nothing if `sides` are empty, before
+     * Adds to the pressure of `fields` what it jumps where the shells with nodal forces f have passed a vertex of the mesh since `sides` (of each shell), which
+     * become the sides at move(). Nothing if `sides` are empty, before
      * the first move() on a mesh, and with the plain interface. Collective.
      */
     void
@@ -200,13 +209,18 @@ namespace tanktread
   };
 
   /**
-   * The rule with the fewest points, 3 or 6 times a power of four a face, whose points on the surface x are close enough for a fluid mesh with finest cells of size h: half a cell from each other, 0.3 cells with the
-   * enriched interface, for which the velocity has a kink there (doc/theory.md, section 4.4). A point's distance is taken as the root of the largest area of one.
+   * The rule with the fewest points, 3 or 6 times a power of four a face, whose points on the surface x are close enough for a fluid mesh with finest cells of
+   * size h: half a cell from each other, 0.3 cells with the
+   * enriched interface, for which the velocity has a kink there (doc/theory.md, section 4.4). A point's distance is taken as the root of the largest area of
+   * one.
    */
   TriangleQuadrature
   coupling_quadrature(const TriangleMesh &topology, const ControlPoints &x, Interface interface, double h);
 
-  /** That rule, and `mechanics` points a face for the shell. @param viscosity_ratio another viscosity inside needs second derivatives as the enriched interface does. */
+  /**
+   * That rule, and `mechanics` points a face for the shell. @param viscosity_ratio another viscosity inside needs second derivatives as the enriched interface
+   * does.
+   */
   CapsuleQuadrature
   capsule_quadrature(const FittedShape &shape, unsigned int mechanics, Interface interface, double h, double viscosity_ratio = 1.);
 } // namespace tanktread

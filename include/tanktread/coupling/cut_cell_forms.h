@@ -36,7 +36,8 @@ namespace tanktread
   }
 
   /**
-   * What a cell that the shell cuts contributes to the maps of JumpEnrichment: everything linear in the forces at its vertices, for a cell of edge one with the amplitudes put in. With psi_v for f_t = 1 at the vertex v (the same for
+   * What a cell that the shell cuts contributes to the maps of JumpEnrichment: everything linear in the forces at its vertices, for a cell of edge one with the
+   * amplitudes put in. With psi_v for f_t = 1 at the vertex v (the same for
    * all components) and eta_j = M_j (chi - i_j) for f_n = -1 at the vertex j. Vectors have four places, the last one zero.
    */
   struct CutCellForms

@@ -19,30 +19,35 @@ namespace tanktread
   struct ViscosityContrast
   {
     double          ratio = 1.; // inside over outside
-    UndisturbedFlow flow;
+    UndisturbedFlow flow{};
   };
 
   /**
-   * Forces f per area on the shell bend the velocity, mu [du/dn] = -f_t, and break the pressure, [p] = f_n (outside minus inside), inside cells that finite elements cannot follow. So velocity and
+   * Forces f per area on the shell bend the velocity, mu [du/dn] = -f_t, and break the pressure, [p] = f_n (outside minus inside), inside cells that finite
+   * elements cannot follow. So velocity and
    * pressure are sought as u_h + psi, p_h + eta with
    *
    *     psi = sum_a q_a N_a (chi - i_a),   q_a = phi(x_a) f_t(x_a)/mu,      eta = sum_j eta_j M_j (chi - i_j),   eta_j = -f_n(x_j)
    *
-   * on the cells that the shell cuts, zero elsewhere: chi is one inside, i_a = chi(x_a), phi the signed distance. These are functions with those jumps minus their nodal interpolants, so they
+   * on the cells that the shell cuts, zero elsewhere: chi is one inside, i_a = chi(x_a), phi the signed distance. These are functions with those jumps minus
+   * their nodal interpolants, so they
    * vanish on all faces that the shell does not cut. f at a node is the average of VertexAverages. With the linear maps
    * f -> psi, eta the stationary value of 1/2 a(u, u) - (p, div u) - <f, u> gives both directions at once:
    *
    *     load        R f = (<f, v> - a(psi, v) + (eta, div v),  (q, div psi))
    *     velocity    U   = R^T (u_h, p_h) + Q f,      <g, Q f> = <g, psi_f> + <f, psi_g> - a(psi_f, psi_g) + (eta_f, div psi_g) + (eta_g, div psi_f)
    *
-   * This class adds what is more than <f, v> and its transpose, for one shell and its own forces; what the forces of one shell do in cells that another one cuts is in ShellPairs.
+   * This class adds what is more than <f, v> and its transpose, for one shell and its own forces; what the forces of one shell do in cells that another one
+   * cuts is in ShellPairs.
    *
    * Viscosity mu = 1 outside and lambda inside: the conditions at the shell are then
    *
    *     [du/dn] = -2/(1 + lambda) (f_t + g_t),   [p] = f_n + g_n,   g = (1 - lambda) (G + G^T) n
    *
-   * with G the mean of the velocity gradients on both sides, the undisturbed flow's included. So f + g takes the place of f in psi (with mu the mean of the viscosities) and eta, g being that of the flow before: a
-   * fixed point. It is no force and no unknown: what it contributes is constant in the directions R f and Q f, like the load -2 ((mu - 1) eps(u_inf), eps(v)) of the undisturbed flow.
+   * with G the mean of the velocity gradients on both sides, the undisturbed flow's included. So f + g takes the place of f in psi (with mu the mean of the
+   * viscosities) and eta, g being that of the flow before: a
+   * fixed point. It is no force and no unknown: what it contributes is constant in the directions R f and Q f, like the load -2 ((mu - 1) eps(u_inf), eps(v))
+   * of the undisturbed flow.
    */
   class JumpEnrichment
   {
@@ -53,7 +58,8 @@ namespace tanktread
     /**
      * Computes everything that depends on where the shell is.
      *
-     * @param points of all shells, kept by reference; those of this one are `range`, the first of them has the number `first`. Collective. Throws NumericalError if the shell is so near to a periodic image of itself that a node of
+     * @param points of all shells, kept by reference; those of this one are `range`, the first of them has the number `first`. Collective. Throws
+     * NumericalError if the shell is so near to a periodic image of itself that a node of
      * the mesh is near to both.
      */
     void
@@ -66,7 +72,8 @@ namespace tanktread
     /**
      * Makes g that of the flow with these gradients.
      *
-     * @param gradients of u_inf + u_h at the points of all shells on this rank, 9 numbers each, entry 3 c + d being du_c/dx_d. @param forces whole ones at the vertices. Collective.
+     * @param gradients of u_inf + u_h at the points of all shells on this rank, 9 numbers each, entry 3 c + d being du_c/dx_d. @param forces whole ones at the
+     * vertices. Collective.
      */
     void
     update_viscous_forces(const std::vector<double> &gradients, const VertexArray &forces);

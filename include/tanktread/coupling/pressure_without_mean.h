@@ -12,7 +12,10 @@
 
 namespace tanktread
 {
-  /** A constant pressure is removed from p_h, and from the load of the continuity equation, of both of which shells would know by errors of the quadrature only: two maps that are each other's transpose. */
+  /**
+   * A constant pressure is removed from p_h, and from the load of the continuity equation, of both of which shells would know by errors of the quadrature only:
+   * two maps that are each other's transpose.
+   */
   class PressureWithoutMean
   {
   public:

@@ -23,7 +23,8 @@ namespace tanktread
   };
 
   /**
-   * The jumps of JumpEnrichment for each shell and of ShellPairs for shells in the same cells, with what they have in common: the pressure, the nodes and the messages. Of no shell at all (the plain interface) it adds nothing, at
+   * The jumps of JumpEnrichment for each shell and of ShellPairs for shells in the same cells, with what they have in common: the pressure, the nodes and the
+   * messages. Of no shell at all (the plain interface) it adds nothing, at
    * no cost.
    */
   class ShellJumps

@@ -11,11 +11,13 @@
 namespace tanktread
 {
   /**
-   * The flow is u_h + sum_c psi_c, p_h + sum_c eta_c with the jumps of all shells c. Where cells that one shell cuts hold points of another one, or are cut by it too, the velocity that the forces of d make at c has the further part
+   * The flow is u_h + sum_c psi_c, p_h + sum_c eta_c with the jumps of all shells c. Where cells that one shell cuts hold points of another one, or are cut by
+   * it too, the velocity that the forces of d make at c has the further part
    *
    *     <g, Q_cd f> = <g, psi_d f> + <f, psi_c g> - a(psi_c g, psi_d f) + (eta_d f, div psi_c g) + (eta_c g, div psi_d f),   Q_dc = Q_cd^T.
    *
-   * Shells do not overlap, chi_c chi_d = 0, so products of their jumps are (chi_c - i_c,a)(chi_d - i_d,b) = i_c,a i_d,b - i_d,b chi_c - i_c,a chi_d: integrals over the insides are enough. One viscosity only.
+   * Shells do not overlap, chi_c chi_d = 0, so products of their jumps are (chi_c - i_c,a)(chi_d - i_d,b) = i_c,a i_d,b - i_d,b chi_c - i_c,a chi_d: integrals
+   * over the insides are enough. One viscosity only.
    */
   class ShellPairs
   {
@@ -24,7 +26,10 @@ namespace tanktread
     void
     reinit(const TaylorHoodSpace &space, const std::vector<JumpEnrichment> &shells);
 
-    /** duals, values += Q_cd f_d for all pairs, in the arrays of JumpEnrichment::add_self_response(), one for each shell but `values` and `at_points`, which hold the points of all of them. */
+    /**
+     * duals, values += Q_cd f_d for all pairs, in the arrays of JumpEnrichment::add_self_response(), one for each shell but `values` and `at_points`, which
+     * hold the points of all of them.
+     */
     void
     add_response(const std::vector<double> &at_points, const std::vector<VertexArray> &forces, std::vector<VertexArray> &duals, std::vector<double> &values) const;
 

@@ -18,7 +18,8 @@ namespace tanktread
   using VelocityGradients = Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor>;
 
   /**
-   * With X_q = S x the coupling's points of a shell and W their weights: the sums S^T W over the points of this rank, and the values S at them. The points of all shells are numbered one shell after the other; arrays of
+   * With X_q = S x the coupling's points of a shell and W their weights: the sums S^T W over the points of this rank, and the values S at them. The points of
+   * all shells are numbered one shell after the other; arrays of
    * values at points hold those of all shells on this rank, in that order.
    */
   class ShellTransfer
@@ -66,7 +67,8 @@ namespace tanktread
     add_moments(const std::vector<double> &values, double *moments) const;
 
     /**
-     * The load R f + sum_q w_q (S dx)_q . grad Phi(X_q) (S g)_q as point forces and moments (PointInterpolation::add_load()), for f and g given by their densities: the second term is the change of R f0, g = M^{-1} f0, when the
+     * The load R f + sum_q w_q (S dx)_q . grad Phi(X_q) (S g)_q as point forces and moments (PointInterpolation::add_load()), for f and g given by their
+     * densities: the second term is the change of R f0, g = M^{-1} f0, when the
      * shell moves by dx.
      */
     void

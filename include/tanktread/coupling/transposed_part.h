@@ -10,13 +10,15 @@
 namespace tanktread
 {
   /**
-   * ((mu - m) grad u^T, grad v) in a cut cell with the functions psi_v of JumpEnrichment, m the smaller of the viscosities 1 outside and `ratio` inside: an integral over one side only. In units of the cell's edge but for
+   * ((mu - m) grad u^T, grad v) in a cut cell with the functions psi_v of JumpEnrichment, m the smaller of the viscosities 1 outside and `ratio` inside: an
+   * integral over one side only. In units of the cell's edge but for
    * the amplitudes.
    */
   struct TransposedPart
   {
     /**
-     * @param inside products over the part of the cell inside the shell. @param node_inside sides of the nodes. @param amplitudes q_a for unit values at the vertices.
+     * @param inside products over the part of the cell inside the shell. @param node_inside sides of the nodes. @param amplitudes q_a for unit values at the
+     * vertices.
      */
     TransposedPart(const GradientProducts                      &inside,
                    const std::array<bool, 27>                  &node_inside,

@@ -40,7 +40,8 @@ namespace tanktread
     explicit VertexAverages(std::shared_ptr<const NodeSpace> vertices);
 
     /**
-     * @param points of all shells, kept by reference. @param range those of this shell. @param first number of its first point among those of all shells. Collective.
+     * @param points of all shells, kept by reference. @param range those of this shell. @param first number of its first point among those of all shells.
+     * Collective.
      */
     void
     move(const ShellConfiguration &shell, const PointInterpolation &points, const PointRange &range, unsigned int first);

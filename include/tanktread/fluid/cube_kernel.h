@@ -21,7 +21,8 @@ namespace tanktread
   best_instruction_set();
 
   /**
-   * Cubes with quadratic velocities and linear pressures. A velocity node has four numbers in the arrays, its three components and one that the kernels read and write but never
+   * Cubes with quadratic velocities and linear pressures. A velocity node has four numbers in the arrays, its three components and one that the kernels read
+   * and write but never
    * change, so that a node is one aligned load. The arrays of sizes, velocity nodes (27 a cube) and pressure nodes (8 a cube) follow one another cube by cube,
    * nodes in lexicographic order, x fastest.
    */
@@ -34,14 +35,18 @@ namespace tanktread
   };
 
   /**
-   * All kernels add to y; Number is float or double. With the shape functions' one-dimensional mass and stiffness matrices M, K diagonalised together by D the Laplace
+   * All kernels add to y; Number is float or double. With the shape functions' one-dimensional mass and stiffness matrices M, K diagonalised together by D the
+   * Laplace
    * matrix K x M x M + M x K x M + M x M x K is (D x D x D)^T diagonal (D x D x D), and D has small integers as entries: some ten operations for three nodes.
    */
   template <typename Number>
   void
   add_laplace(InstructionSet set, const Cubes &cubes, const Number *u, Number *y);
 
-  /** y += (Laplace matrix + mass times that of the unit cube's shape functions) u. @param mass one number a cube: the volume times what the mass matrix is to be multiplied by. */
+  /**
+   * y += (Laplace matrix + mass times that of the unit cube's shape functions) u. @param mass one number a cube: the volume times what the mass matrix is to be
+   * multiplied by.
+   */
   template <typename Number>
   void
   add_helmholtz(InstructionSet set, const Cubes &cubes, const double *mass, const Number *u, Number *y);

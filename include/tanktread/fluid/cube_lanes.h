@@ -110,7 +110,8 @@ namespace tanktread
     // ---- Divergence ----
 
     /**
-     * Six times the integrals of linear times quadratic functions on the unit interval, or of linear functions times derivatives of quadratic ones in the lane of the
+     * Six times the integrals of linear times quadratic functions on the unit interval, or of linear functions times derivatives of quadratic ones in the lane
+     * of the
      * component whose derivative by this direction is in the divergence.
      */
     template <typename Number, int n_cubes>

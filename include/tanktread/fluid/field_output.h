@@ -14,7 +14,8 @@ namespace tanktread
 {
   /**
    * Writes velocity (disturbance plus undisturbed flow), pressure (the continuous field plus `further_pressure` at each node) and the rank of each cell to
-   * `<folder>/<name>_<counter>.pvtu` and a piece for each rank, `<name>_<counter>.<rank>.vtu`; cells are drawn with their quadratic velocity as 2 x 2 x 2 linear ones. Files
+   * `<folder>/<name>_<counter>.pvtu` and a piece for each rank, `<name>_<counter>.<rank>.vtu`; cells are drawn with their quadratic velocity as 2 x 2 x 2
+   * linear ones. Files
    * appear under their names only when they are complete.
    *
    * @param further_pressure function of position, not smooth in general: that of the capsule's interior. @param fields as in State::fluid. Collective.

@@ -13,7 +13,8 @@
 namespace tanktread
 {
   /**
-   * Takes velocities and pressures from a mesh that is about to change and interpolates them at the nodes of the mesh that it becomes, whatever the partitions of the two. Where the
+   * Takes velocities and pressures from a mesh that is about to change and interpolates them at the nodes of the mesh that it becomes, whatever the partitions
+   * of the two. Where the
    * old cells are as large as the new ones, or larger, nothing is lost. Every rank knows the owners of all old cells while the object lives.
    */
   class FieldTransfer

@@ -11,7 +11,8 @@
 namespace tanktread
 {
   /**
-   * Orthonormal vectors v_0, v_1, ... and the preconditioned ones z_0, z_1, ... that belong to them, in single precision: half the memory and half the time for sums over them, and what rounding costs in accuracy is
+   * Orthonormal vectors v_0, v_1, ... and the preconditioned ones z_0, z_1, ... that belong to them, in single precision: half the memory and half the time for
+   * sums over them, and what rounding costs in accuracy is
    * recovered when GMRES starts again from its residual. The memory stays from one solve to the next.
    */
   class KrylovBasis
@@ -40,7 +41,8 @@ namespace tanktread
     set_preconditioned(const FluidBlockVector &vector);
 
     /**
-     * vector -= its part in the space of all v; `coefficients` gets the size() products with them. Classical Gram-Schmidt, twice. Returns the norm of what is left. Collective.
+     * vector -= its part in the space of all v; `coefficients` gets the size() products with them. Classical Gram-Schmidt, twice. Returns the norm of what is
+     * left. Collective.
      */
     double
     orthogonalise(FluidBlockVector &vector, std::vector<double> &coefficients) const;

@@ -10,7 +10,8 @@
 namespace tanktread
 {
   /**
-   * (mu grad u, grad v) + shift (u, v) for each velocity component on the free nodes, on full arrays (see NodeSpace); mu is 1 or one number a cell, shift = 0 at first. `space` is kept by
+   * (mu grad u, grad v) + shift (u, v) for each velocity component on the free nodes, on full arrays (see NodeSpace); mu is 1 or one number a cell, shift = 0
+   * at first. `space` is kept by
    * reference. Its nodes may be those of linear functions too, then mu has to stay 1 and the shift zero.
    */
   template <typename Number>

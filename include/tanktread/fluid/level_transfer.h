@@ -13,7 +13,10 @@
 
 namespace tanktread
 {
-  /** Rows of the interpolation matrix for the owned nodes of the finer mesh: value = sum of weights times values at nodes of the coarser mesh, given by their global numbers. */
+  /**
+   * Rows of the interpolation matrix for the owned nodes of the finer mesh: value = sum of weights times values at nodes of the coarser mesh, given by their
+   * global numbers.
+   */
   struct InterpolationRows
   {
     std::vector<std::size_t>                     start; // n_owned + 1
@@ -26,7 +29,8 @@ namespace tanktread
   /**
    * Lets `mesh` climb one rung and returns the interpolation of quadratic or linear fields from the nodes `coarse` of the rung before.
    *
-   * Each cell takes along the free nodes that its nodes follow from, p4est brings that to the rank which owns the cell afterwards: the partitions of the two rungs need not match.
+   * Each cell takes along the free nodes that its nodes follow from, p4est brings that to the rank which owns the cell afterwards: the partitions of the two
+   * rungs need not match.
    *
    * @param number_fine_nodes called on the new rung, returns its nodes. Collective.
    */

@@ -47,7 +47,8 @@ namespace tanktread
   };
 
   /**
-   * Solves op x = rhs by right-preconditioned flexible GMRES, starting from x, until the residual has fallen to `relative_tolerance` times the norm of rhs. Starts again after 60 iterations, and whenever the residual has
+   * Solves op x = rhs by right-preconditioned flexible GMRES, starting from x, until the residual has fallen to `relative_tolerance` times the norm of rhs.
+   * Starts again after 60 iterations, and whenever the residual has
    * fallen by 5e6 or seems to be small enough, with the true one: the basis is kept in single precision.
    *
    * @param op, preconditioner anything with vmult(dst, src); the preconditioner may vary from one call to the next. @param basis memory that may be used again.

@@ -16,7 +16,8 @@ namespace tanktread
   /**
    * The matrix Phi: free velocity nodes -> velocity at points X_q, and its gradient; the transposes give load vectors. `reinit` for every new set of points.
    *
-   * Each rank has the points in its own cells, local_points(), and arrays of results and of loads hold those only, in this order, with 3 (or 9) numbers a point.
+   * Each rank has the points in its own cells, local_points(), and arrays of results and of loads hold those only, in this order, with 3 (or 9) numbers a
+   * point.
    * Velocities and loads are vectors of TaylorHoodSpace::reinit(), without values at ghosts.
    */
   class PointInterpolation

@@ -11,10 +11,12 @@
 namespace tanktread
 {
   /**
-   * mu (grad u, grad v) - (p, div v), -(q, div u): with one viscosity in the whole box the same flow as the strain form, and the velocity components do not know of each other but
+   * mu (grad u, grad v) - (p, div v), -(q, div u): with one viscosity in the whole box the same flow as the strain form, and the velocity components do not
+   * know of each other but
    * through the pressure. All cells being cubes, nothing is assembled. The viscosity of the outer fluid is the unit, mu = 1.
    *
-   * With a Viscosity mu that varies from m upwards the strain form 2 (mu eps(u), eps(v)) in all cells, without m (grad u^T, grad v), which is m (div u, div v) and does nothing to a solenoidal u:
+   * With a Viscosity mu that varies from m upwards the strain form 2 (mu eps(u), eps(v)) in all cells, without m (grad u^T, grad v), which is m (div u, div v)
+   * and does nothing to a solenoidal u:
    * (mu grad u, grad v) + ((mu - m) grad u^T, grad v), positive definite point by point, and what it was where mu = m.
    */
   class StokesOperator

@@ -10,7 +10,8 @@
 namespace tanktread
 {
   /**
-   * u_c(x) = constant_c + linear_cd x_d + 1/2 quadratic_cde x_d x_e (sums over d and e, quadratic symmetric in them), free of divergence. All fluid unknowns are disturbances of it. The force per volume that keeps it up, the
+   * u_c(x) = constant_c + linear_cd x_d + 1/2 quadratic_cde x_d x_e (sums over d and e, quadratic symmetric in them), free of divergence. All fluid unknowns
+   * are disturbances of it. The force per volume that keeps it up, the
    * gradient of its pressure included, acts on the liquid inside a capsule as on that outside. Velocities in a times the unit of rates.
    */
   struct UndisturbedFlow

@@ -25,13 +25,17 @@ namespace tanktread
   };
 
   /**
-   * Viscosity, in that of the outer liquid, at the points of the 3 x 3 x 3 Gauss rule of each cell of this rank, and what there is more in cut cells. The strain form is integrated with these, preconditioners take the cells'
+   * Viscosity, in that of the outer liquid, at the points of the 3 x 3 x 3 Gauss rule of each cell of this rank, and what there is more in cut cells. The
+   * strain form is integrated with these, preconditioners take the cells'
    * means.
    */
   class Viscosity
   {
   public:
-    /** @param at_points 27 positive numbers a cell, x fastest. @param least not larger than any of them, the same on all ranks. @param cut what to add to `at_points`. */
+    /**
+     * @param at_points 27 positive numbers a cell, x fastest. @param least not larger than any of them, the same on all ranks. @param cut what to add to
+     * `at_points`.
+     */
     Viscosity(std::vector<double> at_points, double least, CutCells cut = {});
 
     const std::vector<double> &

@@ -21,8 +21,10 @@ namespace tanktread
   };
 
   /**
-   * A kind of capsule: its control mesh and initial shape, the limit surface with the points of the mechanics and with those of the coupling, its elasticity, the mass matrix M = S^T W S of the coupling's points with
-   * weights W in area of the initial shape, and the volume V0 that it encloses. Nothing of it changes with time; ShellConfiguration is what it makes of control points.
+   * A kind of capsule: its control mesh and initial shape, the limit surface with the points of the mechanics and with those of the coupling, its elasticity,
+   * the mass matrix M = S^T W S of the coupling's points with
+   * weights W in area of the initial shape, and the volume V0 that it encloses. Nothing of it changes with time; ShellConfiguration is what it makes of control
+   * points.
    */
   class Capsule
   {

@@ -27,7 +27,8 @@ namespace tanktread
   add_transposed_stencils(const FaceStencils &face, const double *g, double *f);
 
   /**
-   * block[c][d][i][j] = sum_kpq stencil(k, p, i) H_k[3 p + c][3 q + d] stencil(k, q, j), 9 n^2 numbers. H_k begins at hessians + 225 k and has rows of length 15,
+   * block[c][d][i][j] = sum_kpq stencil(k, p, i) H_k[3 p + c][3 q + d] stencil(k, q, j), 9 n^2 numbers. H_k begins at hessians + 225 k and has rows of length
+   * 15,
    * of which the first 3 n_rows are used. With `symmetric` all H_k have to be symmetric, and a third of the work is saved. `scratch` has room for
    * 4 n_rows n numbers.
    */

@@ -20,8 +20,10 @@ namespace tanktread
   };
 
   /**
-   * Of all pairs of shells and their images by multiples of `periods` (infinite along axes without). Distances are those of the points of the coupling of one shell from the nearest quadratic patch (or plane, without second
-   * derivatives) of the other one; pairs that are farther apart than `reach` are judged by every 16th point and so to about the distance of these. A capsule and images of itself count within `reach` only.
+   * Of all pairs of shells and their images by multiples of `periods` (infinite along axes without). Distances are those of the points of the coupling of one
+   * shell from the nearest quadratic patch (or plane, without second
+   * derivatives) of the other one; pairs that are farther apart than `reach` are judged by every 16th point and so to about the distance of these. A capsule
+   * and images of itself count within `reach` only.
    */
   ShellGap
   smallest_gap(const ShellConfigurations &shells, const std::array<double, 3> &periods, double reach);

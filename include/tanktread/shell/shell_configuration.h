@@ -17,7 +17,8 @@ namespace tanktread
   using ShellFields = std::vector<ControlPoints>;
 
   /**
-   * The shell of a capsule at control points x. Each quantity is computed when it is asked for first and kept: everything that needs the shell at x shares one object. Not for several threads at once. The members throw
+   * The shell of a capsule at control points x. Each quantity is computed when it is asked for first and kept: everything that needs the shell at x shares one
+   * object. Not for several threads at once. The members throw
    * NumericalError where the surface is degenerate.
    */
   class ShellConfiguration

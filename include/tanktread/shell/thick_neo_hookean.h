@@ -50,7 +50,8 @@ namespace tanktread
    * the metric g of the layer at height zeta eta of the deformed shell, eta = sqrt(det abar/det a) the stretch of the thickness,
    *   W = (1/h) int (E h/6) (gbar^{alpha beta} g_{alpha beta} + det gbar/det g - 3) sqrt(det gbar/det abar) dzeta,
    * the mean over -h/2 < zeta < h/2 by Simpson's rule with three points. For h -> 0 that is neo_hookean() with G_s = E h/3; the next term is of order h^2.
-   * Without `with_hessian` the second derivatives are left zero. Throws NumericalError where the inner or outer side of the shell has folded: half the thickness
+   * Without `with_hessian` the second derivatives are left zero. Throws NumericalError where the inner or outer side of the shell has folded: half the
+   * thickness
    * beyond a radius of curvature.
    */
   ThickDensity

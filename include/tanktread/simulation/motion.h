@@ -29,7 +29,8 @@ namespace tanktread
   };
 
   /**
-   * Result of motion_summary(). Times in the scene's unit, frequencies in turns per unit of time: a period of the material or of the shape is the inverse. The shape comes back to
+   * Result of motion_summary(). Times in the scene's unit, frequencies in turns per unit of time: a period of the material or of the shape is the inverse. The
+   * shape comes back to
    * itself after half a turn, so D has twice the frequency. A number that the run is too short for is not a number.
    */
   struct MotionSummary
@@ -45,8 +46,10 @@ namespace tanktread
   };
 
   /**
-   * Judges a series of samples in order of time by the rule of doc/theory.md, section 8.2: over the time after the first half turn of the marker, the shape turns if
-   * theta covers half a turn or more, the material if delta does; swinging, tumbling and transition are material alone, shape alone and both. Steady means that D and theta / pi have
+   * Judges a series of samples in order of time by the rule of doc/theory.md, section 8.2: over the time after the first half turn of the marker, the shape
+   * turns if
+   * theta covers half a turn or more, the material if delta does; swinging, tumbling and transition are material alone, shape alone and both. Steady means that
+   * D and theta / pi have
    * changed by less than 0.001 in the last fifth of the run, or that the run has ended because the shape had stopped changing (`ended_steady`).
    */
   MotionSummary

@@ -13,7 +13,8 @@ namespace tanktread
    *
    *     S_ij = - integral over the shell of x_i f_j dGamma,   f the force of the shell on the liquid per area.
    *
-   * With the density M^{-1} F of the nodal forces F (`force`, NP x 3) and positions linear in the control points x (NP x 3) the integral is the sum of x_I F_I^T, exactly.
+   * With the density M^{-1} F of the nodal forces F (`force`, NP x 3) and positions linear in the control points x (NP x 3) the integral is the sum of x_I
+   * F_I^T, exactly.
    * A pressure jump has no part in it: its nodal forces pi dV/dx give pi V times the unit tensor. Unit mu gamma a^3. doc/theory.md, eq. (52a).
    *
    * This is all of the particle stress when the viscosity inside is that outside; otherwise viscous_stress() belongs to it.
@@ -21,7 +22,10 @@ namespace tanktread
   Eigen::Matrix3d
   particle_stress(const ControlPoints &x, const ControlPoints &force);
 
-  /** With the viscosity ratio lambda, (lambda - 1) times the integral of U n + n U over the shell. `velocity` U: of the control points, NP x 3, the undisturbed flow included. */
+  /**
+   * With the viscosity ratio lambda, (lambda - 1) times the integral of U n + n U over the shell. `velocity` U: of the control points, NP x 3, the undisturbed
+   * flow included.
+   */
   Eigen::Matrix3d
   viscous_stress(const SubdivisionSurface &surface, const ControlPoints &x, const ControlPoints &velocity, double viscosity_ratio);
 

@@ -10,7 +10,8 @@
 namespace tanktread
 {
   /**
-   * Tank-treading angle alpha, the polar angle in the x-z plane, seen from the centroid, of a marker on the shell, and phase angle delta = alpha - theta - [alpha(0) - theta(0)]
+   * Tank-treading angle alpha, the polar angle in the x-z plane, seen from the centroid, of a marker on the shell, and phase angle delta = alpha - theta -
+   * [alpha(0) - theta(0)]
    * with the inclination theta. All in units of pi and continuous in time: a step must not turn the marker by more than pi, nor the shape by more than pi/2.
    *
    * The marker is the vertex that lies furthest along the long axis (along x while the section is round) at the start.
@@ -18,7 +19,10 @@ namespace tanktread
   class PhaseAngles
   {
   public:
-    /** Starts at the control points x of `topology`. `theta_over_pi` is not a number while the section is round: then delta counts from the first time that it is one. */
+    /**
+     * Starts at the control points x of `topology`. `theta_over_pi` is not a number while the section is round: then delta counts from the first time that it
+     * is one.
+     */
     PhaseAngles(const TriangleMesh &topology, const ControlPoints &x, const InertiaEllipsoid &ellipsoid, double theta_over_pi);
 
     void

@@ -17,13 +17,14 @@ namespace tanktread
 {
   /**
    * history.csv (one row a step), contours.csv (cuts parallel to the plane y = 0 through the middle of the capsule at each field output and when
-   * asked for: time, x, z), both with _1, ..., _N in their names where there are N capsules; suspension.csv (all capsules together), shell_NNNN.vtu and fluid_NNNNN.pvtu with shell.pvd and
+   * asked for: time, x, z), both with _1, ..., _N in their names where there are N capsules; suspension.csv (all capsules together), shell_NNNN.vtu and
+   * fluid_NNNNN.pvtu with shell.pvd and
    * fluid.pvd, summary.csv at the end. The first rank writes all but the pieces of the fluid.
    */
   class Results
   {
   public:
-    /** The folder must exist. What cannot be written on the first rank throws InputError on all. Collective, as are all members. */
+    /** The folder must exist. What cannot be written on the first rank throws OutputError on all. Collective, as are all members. */
     Results(const std::string &folder, unsigned int n_capsules, MPI_Comm communicator);
 
     void
@@ -37,7 +38,10 @@ namespace tanktread
     void
     add_contours(double time, const Capsule &capsule, const ShellFields &x);
 
-    /** summary.csv: lines "quantity,value", the first of them `outcome` with the word "done", "steady" or "failed"; with several capsules the quantities of each have its number at their end. */
+    /**
+     * summary.csv: lines "quantity,value", the first of them `outcome` with the word "done", "steady" or "failed"; with several capsules the quantities of each
+     * have its number at their end.
+     */
     void
     write_summary(const std::string &outcome, const std::vector<MotionSummary> &capsules) const;
 

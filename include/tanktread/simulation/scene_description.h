@@ -13,7 +13,10 @@ namespace tanktread
   SceneDescription
   scene_description(const Parameters &parameters);
 
-  /** Throws InputError for what only the shapes themselves tell: capsules larger than the box, beyond its faces, too near to images of themselves or overlapping, shells too thick for their curvature. */
+  /**
+   * Throws InputError for what only the shapes themselves tell: capsules larger than the box, beyond its faces, too near to images of themselves or
+   * overlapping, shells too thick for their curvature.
+   */
   void
   check_scene(const Parameters &parameters);
 } // namespace tanktread

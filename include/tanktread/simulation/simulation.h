@@ -23,7 +23,10 @@ namespace tanktread
     /** Everything that can be wrong about the input has been checked by `parameters.check()`; nothing is written before run(). */
     Simulation(const Parameters &parameters, MPI_Comm communicator);
 
-    /** Makes the output folder and runs to the end time or the steady state. Throws NumericalError, after writing the last good state, when a step cannot be done. */
+    /**
+     * Makes the output folder and runs to the end time or the steady state. Throws NumericalError, after writing the last good state, when a step cannot be
+     * done.
+     */
     void
     run();
 

@@ -57,7 +57,10 @@ namespace tanktread
     double
     first_length() const;
 
-    /** Positions at a time up to the last level: the parabola through the last three levels, the straight line through two, the only one. As accurate as the schemes where it lies between the last two. */
+    /**
+     * Positions at a time up to the last level: the parabola through the last three levels, the straight line through two, the only one. As accurate as the
+     * schemes where it lies between the last two.
+     */
     ShellFields
     at(double time) const;
 

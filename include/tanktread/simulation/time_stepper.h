@@ -23,8 +23,10 @@ namespace tanktread
   };
 
   /**
-   * Moves a State from one time level to the next. An implicit step that Newton's method does not solve is tried again from the last level instead of the extrapolated
-   * guess, then with half its length; one whose shells overlap at its end, with half its length; one whose local error exceeds Time/Tolerance is repeated with a shorter length; lengths grow back by at most 1.5. Failed attempts are
+   * Moves a State from one time level to the next. An implicit step that Newton's method does not solve is tried again from the last level instead of the
+   * extrapolated
+   * guess, then with half its length; one whose shells overlap at its end, with half its length; one whose local error exceeds Time/Tolerance is repeated with
+   * a shorter length; lengths grow back by at most 1.5. Failed attempts are
    * said in the log. All calls are collective.
    */
   class TimeStepper
@@ -37,19 +39,27 @@ namespace tanktread
     void
     start(double time, const ShellFields &x);
 
-    /** What the time scheme looks back to: `state`, the last level, and the one before, if there is one. Where there is inertia their flows are to be carried over changes of mesh. */
+    /**
+     * What the time scheme looks back to: `state`, the last level, and the one before, if there is one. Where there is inertia their flows are to be carried
+     * over changes of mesh.
+     */
     std::vector<State *>
     levels(State &state);
 
-    /** To be called when the fluid's mesh has changed and the flows of levels() are not carried over: nothing is extrapolated over that. The positions of the shells stay known to the scheme. */
+    /**
+     * To be called when the fluid's mesh has changed and the flows of levels() are not carried over: nothing is extrapolated over that. The positions of the
+     * shells stay known to the scheme.
+     */
     void
     forget_flow();
 
     /**
-     * One step from `time`, not beyond the end time. Throws NumericalError, with `state` as it was, when no length down to a thousandth of Time/Step can be solved or the
+     * One step from `time`, not beyond the end time. Throws NumericalError, with `state` as it was, when no length down to a thousandth of Time/Step can be
+     * solved or the
      * explicit coupling is unstable.
      *
-     * @param mesh_is_new whether the mesh has just been made for this step: then steps whose shells end beyond its finest cells are shortened instead of reported.
+     * @param mesh_is_new whether the mesh has just been made for this step: then steps whose shells end beyond its finest cells are shortened instead of
+     * reported.
      */
     StepResult
     step(State &state, double time, bool mesh_is_new);

@@ -22,7 +22,8 @@ namespace tanktread
 
   /**
    * LU factors of matrices with the pattern of AssemblyPattern::block_matrix(), ordered by nested dissection, pivots on the diagonal where they are not small.
-   * Measured on one core for Z + tau K of LinearisedShell with 642, 2562, 10242 control points: 24, 230, 2200 ms a factorisation, 0.3, 3.7, 24 ms a solve. (COLAMD: 48 and
+   * Measured on one core for Z + tau K of LinearisedShell with 642, 2562, 10242 control points: 24, 230, 2200 ms a factorisation, 0.3, 3.7, 24 ms a solve.
+   * (COLAMD: 48 and
    * 770 ms, 0.4 and 8.2 ms, the largest not finished in a minute; UMFPACK twice as slow; CHOLMOD and LDL^T, for symmetric matrices only, no faster.)
    */
   class BlockFactorisation

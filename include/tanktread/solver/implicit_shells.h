@@ -15,10 +15,12 @@
 namespace tanktread
 {
   /**
-   * For each capsule the map Z_tau (Z_tau + tau K_pi)^{-1}, Z_tau = Z (1 - tau grad u_inf), by which LinearisedShells multiplies the force row of the Newton system: Z, tau and
+   * For each capsule the map Z_tau (Z_tau + tau K_pi)^{-1}, Z_tau = Z (1 - tau grad u_inf), by which LinearisedShells multiplies the force row of the Newton
+   * system: Z, tau and
    * K_pi = K - pi H_V of some linearisation.
    *
-   * Any regular matrix would leave the solution of the system unchanged; this one makes it fast. So one made for an earlier shape serves as long as it makes it fast
+   * Any regular matrix would leave the solution of the system unchanged; this one makes it fast. So one made for an earlier shape serves as long as it makes it
+   * fast
    * enough, which linear solves are watched for. All capsules' operators are renewed together.
    *
    * Factors are on the rank that owns the capsule only.
@@ -29,7 +31,10 @@ namespace tanktread
     /** Both are kept by reference. */
     ImplicitShells(const ShellLayout &layout, SolverMemory &memory);
 
-    /** Whether there are operators that are expected to do well with a step of length tau: made for one that differs by a factor of 1.5 at most, and not worn out. */
+    /**
+     * Whether there are operators that are expected to do well with a step of length tau: made for one that differs by a factor of 1.5 at most, and not worn
+     * out.
+     */
     bool
     serves(double tau) const;
 
@@ -38,7 +43,8 @@ namespace tanktread
     renew(std::vector<ImplicitOperator> operators, double tau);
 
     /**
-     * To be told about every linear solve with these operators. They are worn out when one takes more than 1.1 times the iterations that a decade took in the best solve so far, and 1 more: an
+     * To be told about every linear solve with these operators. They are worn out when one takes more than 1.1 times the iterations that a decade took in the
+     * best solve so far, and 1 more: an
      * iteration costs several factorisations where the fluid has many unknowns a rank. The first rank decides for all. Collective.
      */
     void
@@ -62,7 +68,10 @@ namespace tanktread
     ControlPoints
     damped(unsigned int c, const ControlPoints &force) const;
 
-    /** (Z_tau + tau K_pi)^{-1} force of capsule c on the rank that owns it, zero on the others: about how fast the shell moves to balance a force that is missing. */
+    /**
+     * (Z_tau + tau K_pi)^{-1} force of capsule c on the rank that owns it, zero on the others: about how fast the shell moves to balance a force that is
+     * missing.
+     */
     ControlPoints
     velocity(unsigned int c, const ControlPoints &force) const;
 

@@ -44,12 +44,13 @@ namespace tanktread
     double           accuracy = 0.; // relative error that the map dw may have, see ShellMotion
     PointDerivatives derivatives = PointDerivatives::complete;
     Tangent          tangent     = Tangent::exact; // positive: without the negative stiffness of a shell under pressure from its sides, and without -pi H_V
-    UndisturbedFlow  flow;
+    UndisturbedFlow  flow{};
     double           viscosity = 1.; // mean of inside and outside
   };
 
   /**
-   * The rows of one shell in the Newton system about (x, F, u, pi, sigma) for a time step of effective length tau, v = dV/dx, H_V = d2V/dx2 (doc/theory.md, section 6):
+   * The rows of one shell in the Newton system about (x, F, u, pi, sigma) for a time step of effective length tau, v = dV/dx, H_V = d2V/dx2 (doc/theory.md,
+   * section 6):
    *
    *     (M - tau Gamma - sigma H_V) dx = tau S^T W Phi du + dsigma v - M r_x,   v . dx = -r_V,   Gamma = S^T W grad u S
    *     dG + (K - pi H_V) dx = -r_F,                                            dG = dF + pi H_V dx: change of F + pi v at fixed pi
@@ -60,16 +61,22 @@ namespace tanktread
    *
    *     Z = c0 M_s + c1 L_s,   c0 = 4 mu k1 k2/(k1 + k2),   c1 = 4 mu/(k1 + k2),   k1 = 2/a,   k2 = pi/h,
    *
-   * (mass and Laplace-Beltrami matrices on the current surface, mu the mean of the viscosities inside and outside) stands for the inverse of the surface mobility J A^{-1} J^T: c0 + c1 k^2 equals the symbol 4 mu k of
+   * (mass and Laplace-Beltrami matrices on the current surface, mu the mean of the viscosities inside and outside) stands for the inverse of the surface
+   * mobility J A^{-1} J^T: c0 + c1 k^2 equals the symbol 4 mu k of
    * that inverse for a plane at both ends of the resolved wave numbers. Eliminating the fluid exactly would leave about
-   * (1 + tau K (1 - tau grad u_inf)^{-1} J A^{-1} J^T) dG, so after the multiplication the row is close to dG = ... for any stiffness. ImplicitShells holds this operator, and it may come from an earlier linearisation.
+   * (1 + tau K (1 - tau grad u_inf)^{-1} J A^{-1} J^T) dG, so after the multiplication the row is close to dG = ... for any stiffness. ImplicitShells holds
+   * this operator, and it may come from an earlier linearisation.
    *
-   * With PointDerivatives::frozen the derivatives of J(x) and R(x) by x are left out, but for the undisturbed flow's: Gamma is that of grad u_inf and D_R = 0. They are the
-   * derivatives of piecewise polynomials at the quadrature points, true only while a point stays in its cell; for longer ways the incomplete system is the better model of what
+   * With PointDerivatives::frozen the derivatives of J(x) and R(x) by x are left out, but for the undisturbed flow's: Gamma is that of grad u_inf and D_R = 0.
+   * They are the
+   * derivatives of piecewise polynomials at the quadrature points, true only while a point stays in its cell; for longer ways the incomplete system is the
+   * better model of what
    * happens, and it is never indefinite because of them.
    *
-   * H_V has eigenvalues up to about pi/h against M, so that the first matrix is indefinite for larger |sigma| than h/pi, without the whole system being: dx is eliminated
-   * before the stiffness of the shell can damp it. sigma H_V is therefore left out for |sigma| > h/(2 pi). That is long after what the volume needs in common time steps, and costs
+   * H_V has eigenvalues up to about pi/h against M, so that the first matrix is indefinite for larger |sigma| than h/pi, without the whole system being: dx is
+   * eliminated
+   * before the stiffness of the shell can damp it. sigma H_V is therefore left out for |sigma| > h/(2 pi). That is long after what the volume needs in common
+   * time steps, and costs
    * Newton's method the second order, not the convergence: the shell's stiffness keeps what is neglected small.
    *
    * tau = 0 freezes the shell: then dG = 0 and no derivative of the forces is needed.
@@ -78,7 +85,8 @@ namespace tanktread
   {
   public:
     /**
-     * @param c number of the capsule in `coupling`. @param shell its shell at state.x. @param velocity of the control points, J u + u_inf(x). @param velocity_gradient of u at the points of this shell on this rank, whose Gamma is meant;
+     * @param c number of the capsule in `coupling`. @param shell its shell at state.x. @param velocity of the control points, J u + u_inf(x). @param
+     * velocity_gradient of u at the points of this shell on this rank, whose Gamma is meant;
      * that of the undisturbed flow is added. `coupling` is kept by reference.
      *
      * Collective. Throws NumericalError when a matrix is singular.
@@ -153,7 +161,8 @@ namespace tanktread
   {
   public:
     /**
-     * @param shells at the state's positions. @param velocities of the control points, J u + u_inf(x). @param velocity_gradients of u at the points of each shell on this rank. @param implicit_shells are renewed unless they serve for
+     * @param shells at the state's positions. @param velocities of the control points, J u + u_inf(x). @param velocity_gradients of u at the points of each
+     * shell on this rank. @param implicit_shells are renewed unless they serve for
      * tau; kept by reference, and not to be changed as long as this object is in use, as `coupling`.
      *
      * Collective. Throws NumericalError when one of the matrices is singular.

@@ -13,7 +13,8 @@
 namespace tanktread
 {
   /**
-   * The Newton system in (du, dp) and, for each capsule, (dpi, dG), dx being eliminated by LinearisedShell (sums over the capsules; the last two rows for each):
+   * The Newton system in (du, dp) and, for each capsule, (dpi, dG), dx being eliminated by LinearisedShell (sums over the capsules; the last two rows for
+   * each):
    *
    *                   A du - B^T dp - sum [R(dG + v dpi) + D_R dx] = ...     D_R dx: motion of the spreading points
    *                                                      - B du = ...
@@ -51,7 +52,8 @@ namespace tanktread
   };
 
   /**
-   * Block-triangular: the shells' forces (their rows are already close to the identity) and the pressures first, with the mass matrix for the Schur complement and the
+   * Block-triangular: the shells' forces (their rows are already close to the identity) and the pressures first, with the mass matrix for the Schur complement
+   * and the
    * capsule's volume, over the mean viscosity, for that of the pressure jump; then one multigrid V-cycle for the velocities.
    */
   class MonolithicPreconditioner

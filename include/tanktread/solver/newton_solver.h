@@ -27,13 +27,17 @@ namespace tanktread
   };
 
   /**
-   * Solves for all unknowns of a TimeLevel together, by Newton's method with the complete derivative. All parts of a residual are measured as velocities of the shells, in a per unit of
-   * time: that of J P^{-1} (r_u, r_p) with the Stokes preconditioner P, |r_x| / tau, |(Z_tau + tau (K - pi H_V))^{-1} r_F| with the operators that ImplicitShells holds, r_pi / (3 V0) and r_V / (3 V0 tau), the first three as root mean squares over the
+   * Solves for all unknowns of a TimeLevel together, by Newton's method with the complete derivative. All parts of a residual are measured as velocities of the
+   * shells, in a per unit of
+   * time: that of J P^{-1} (r_u, r_p) with the Stokes preconditioner P, |r_x| / tau, |(Z_tau + tau (K - pi H_V))^{-1} r_F| with the operators that
+   * ImplicitShells holds, r_pi / (3 V0) and r_V / (3 V0 tau), the first three as root mean squares over the
    * control points. (The Euclidean norm of the load vector r_u would not do: moving the shell within a cell redistributes loads among the
    * nodes, which changes the vector much and the flow little.)
    *
    * With another viscosity inside, the viscosity stays while the linear system is solved and during line search; after an
-   * iteration it follows the shell as the points of the enriched interface do. So does what the viscosities contribute to the jumps of that interface (JumpEnrichment), which stays for the rest of the step when the residual after a sweep is below ten times the tolerance, or half of the iterations allowed are over.
+   * iteration it follows the shell as the points of the enriched interface do. So does what the viscosities contribute to the jumps of that interface
+   * (JumpEnrichment), which stays for the rest of the step when the residual after a sweep is below ten times the tolerance, or half of the iterations allowed
+   * are over.
    */
   class NewtonSolver
   {
@@ -44,18 +48,22 @@ namespace tanktread
     /**
      * Advances `state`, which holds the initial guess, to the solution. If the report says that it did not converge, `state` is as it was. Collective.
      *
-     * The shells' implicit operators are those of an earlier iteration or time level as long as ImplicitShells says that they serve. They change between iterations only, at the
+     * The shells' implicit operators are those of an earlier iteration or time level as long as ImplicitShells says that they serve. They change between
+     * iterations only, at the
      * linearisation, so that residuals compared in a line search are measured alike. An iteration that fails with old operators is done again with new ones.
      *
-     * Where the linear solver fails with the exact tangent, which may be indefinite, the positive one takes its place for the rest of the step, and until the solution of the next is near.
+     * Where the linear solver fails with the exact tangent, which may be indefinite, the positive one takes its place for the rest of the step, and until the
+     * solution of the next is near.
      *
-     * Iterations whose displacement |r| tau is longer than a quarter of a cell freeze the points, the others use the complete derivative and converge quadratically.
+     * Iterations whose displacement |r| tau is longer than a quarter of a cell freeze the points, the others use the complete derivative and converge
+     * quadratically.
      */
     NewtonReport
     solve(State &state, const TimeStep &step);
 
     /**
-     * The Stokes flow at fixed shells and forces F = f(x), at `time`: u, p and pi such that no volume flows through the shells. Returns the linear iterations. Throws
+     * The Stokes flow at fixed shells and forces F = f(x), at `time`: u, p and pi such that no volume flows through the shells. Returns the linear iterations.
+     * Throws
      * NumericalError if it fails. Collective.
      */
     unsigned int
@@ -84,7 +92,10 @@ namespace tanktread
       bool         solved   = false;
     };
 
-    /** What line search does with the points: those of the enriched interface stay, at fixed positions J is the transpose of R and the linear system their exact derivative. */
+    /**
+     * What line search does with the points: those of the enriched interface stay, at fixed positions J is the transpose of R and the linear system their exact
+     * derivative.
+     */
     Points
     trial_points() const;
     void
@@ -96,7 +107,8 @@ namespace tanktread
     void
     react(const std::string &failure, bool renewed, Progress &progress);
     /**
-     * With the enriched interface or another viscosity inside: moves points and viscosity after the shells unless they are close enough, so that no solution is accepted with them elsewhere, and, unless settled, makes the viscous part of
+     * With the enriched interface or another viscosity inside: moves points and viscosity after the shells unless they are close enough, so that no solution is
+     * accepted with them elsewhere, and, unless settled, makes the viscous part of
      * the jumps that of the present flow. Returns true if anything has changed.
      */
     bool

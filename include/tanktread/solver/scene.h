@@ -31,7 +31,8 @@ namespace tanktread
   };
 
   /**
-   * The objects of a scene and who knows whom: the liquid, the kind of capsule, their coupling, a time level of all unknowns and its solver, with their memory. The program, the benchmarks and the tests build scenes through this class.
+   * The objects of a scene and who knows whom: the liquid, the kind of capsule, their coupling, a time level of all unknowns and its solver, with their memory.
+   * The program, the benchmarks and the tests build scenes through this class.
    * All members but the plain accessors are collective.
    */
   class Scene

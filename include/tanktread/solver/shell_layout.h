@@ -23,7 +23,10 @@ namespace tanktread
     ControlPoints force;
   };
 
-  /** Capsule c has the entries c n, ..., (c + 1) n - 1 of the shell block, n = 1 + 3 NP; all of them belong to one rank, and each rank has capsules that follow each other. */
+  /**
+   * Capsule c has the entries c n, ..., (c + 1) n - 1 of the shell block, n = 1 + 3 NP; all of them belong to one rank, and each rank has capsules that follow
+   * each other.
+   */
   class ShellLayout
   {
   public:

@@ -16,7 +16,8 @@ namespace tanktread
    *
    *     A^{-1} = sum_k (M^{-1} N)^k M^{-1},
    *
-   * or LU factors of A where the series converges too slowly to be worth it. A term costs about as much as a solve with the factors, to make these as much as 100 terms or more; a
+   * or LU factors of A where the series converges too slowly to be worth it. A term costs about as much as a solve with the factors, to make these as much as
+   * 100 terms or more; a
    * linearisation needs some 12 solves.
    */
   class ShellMotion
@@ -26,7 +27,8 @@ namespace tanktread
     static constexpr unsigned int max_terms = 12;
 
     /**
-     * M is the mass matrix of `capsule`, kept by reference; `N` has the pattern of AssemblyPattern::block_matrix(). `accuracy`: error wanted, relative to the solution and measured on a rough field.
+     * M is the mass matrix of `capsule`, kept by reference; `N` has the pattern of AssemblyPattern::block_matrix(). `accuracy`: error wanted, relative to the
+     * solution and measured on a rough field.
      * Throws NumericalError when A has to be factorised and is singular.
      */
     ShellMotion(const Capsule &capsule, SparseMatrix N, double accuracy);

@@ -19,7 +19,8 @@ namespace tanktread
   };
 
   /**
-   * What the result of a step depends on, within the solver's tolerances, beside the State, the positions and flows of earlier time levels, and the fluid's mesh: with these a step is determined. Where the coupling's points are and
+   * What the result of a step depends on, within the solver's tolerances, beside the State, the positions and flows of earlier time levels, and the fluid's
+   * mesh: with these a step is determined. Where the coupling's points are and
    * the viscous part g of the jumps belong to it too; Coupling holds them.
    */
   struct SolverMemory

@@ -63,7 +63,8 @@ namespace tanktread
    *     A u - B^T p = sum R(x)(F + pi v(x)),   B u = 0,   v . (J(x) u + u_inf) = 0,   F = f(x),
    *     x = xhat + tau (J(x) u + u_inf(x)) + sigma m(x),   V(x) = V0,   v = dV/dx,   m = M^{-1} v.
    *
-   * xhat and tau carry the time scheme: x_n and dt for backward Euler. The pressure jump pi lets no volume through the shell at the new time level; what a finite step
+   * xhat and tau carry the time scheme: x_n and dt for backward Euler. The pressure jump pi lets no volume through the shell at the new time level; what a
+   * finite step
    * along such a velocity still changes of the volume is an error of the time scheme, which the uniform normal displacement sigma m takes away. (To ask
    * the fluid for that volume instead would drive flow through the shell against incompressibility, with a pressure jump that grows like dt/h.)
    *
@@ -91,7 +92,10 @@ namespace tanktread
       follow,
       stay
     };
-    /** Points::follow moves the points to the state's positions, and carries the pressure over. Collective. Throws NumericalError for shells that are degenerate or out of the box. */
+    /**
+     * Points::follow moves the points to the state's positions, and carries the pressure over. Collective. Throws NumericalError for shells that are degenerate
+     * or out of the box.
+     */
     Residual
     residual(State &state, const TimeStep &step, Points points);
 
@@ -129,7 +133,8 @@ namespace tanktread
     set_forces(State &state) const;
 
     /**
-     * What more than the undisturbed flow dissipates, the integral of 2 mu eps : eps of the whole flow over the box minus that of the undisturbed flow: the shells' work on the disturbance and, with another viscosity inside,
+     * What more than the undisturbed flow dissipates, the integral of 2 mu eps : eps of the whole flow over the box minus that of the undisturbed flow: the
+     * shells' work on the disturbance and, with another viscosity inside,
      * 2 ((mu - 1) eps(u_inf), eps(u)) + 2 ((mu - 1) eps(u_inf), eps(u_inf)). Collective.
      */
     double
@@ -139,7 +144,10 @@ namespace tanktread
     double
     inertial_power(const State &state) const;
 
-    /** Makes the pressure of `state` that of the sides on which the coupling's points have the vertices; a state of another time can then be combined with those of the present. Collective. */
+    /**
+     * Makes the pressure of `state` that of the sides on which the coupling's points have the vertices; a state of another time can then be combined with those
+     * of the present. Collective.
+     */
     void
     carry_pressure(State &state) const;
 

@@ -66,7 +66,8 @@ namespace tanktread
   };
 
   /**
-   * blocks += matrix (x) `components`, for a scalar_matrix() and a block_matrix() of the same pattern. Throws std::logic_error when the numbers of entries do not
+   * blocks += matrix (x) `components`, for a scalar_matrix() and a block_matrix() of the same pattern. Throws std::logic_error when the numbers of entries do
+   * not
    * fit.
    */
   void

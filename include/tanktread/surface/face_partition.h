@@ -11,7 +11,8 @@
 namespace tanktread
 {
   /**
-   * Divides the faces of `topology` into `n_parts` parts of about equal size and short boundaries: METIS on the graph of faces that share an edge. Entry r lists the
+   * Divides the faces of `topology` into `n_parts` parts of about equal size and short boundaries: METIS on the graph of faces that share an edge. Entry r
+   * lists the
    * faces of part r in ascending order; each face is in one part. Same input, same result. With as many parts as faces or more, face f is
    * part f. Throws std::logic_error for n_parts = 0.
    */

@@ -11,7 +11,8 @@
 namespace tanktread
 {
   /**
-   * Reads a legacy VTK file (.vtk) in ASCII of any version: the POINTS and POLYGONS of a POLYDATA or the POINTS and CELLS of an UNSTRUCTURED_GRID. Data on points
+   * Reads a legacy VTK file (.vtk) in ASCII of any version: the POINTS and POLYGONS of a POLYDATA or the POINTS and CELLS of an UNSTRUCTURED_GRID. Data on
+   * points
    * and cells are ignored. Throws InputError with file and line when the file cannot be opened, is binary, ends early, or has cells that are no triangles.
    */
   TriangleMesh

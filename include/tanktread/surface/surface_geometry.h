@@ -28,7 +28,8 @@ namespace tanktread
 
   /**
    * Second derivatives of the discrete volume with xbar held fixed, 3 NP x 3 NP, symmetric; the pattern is that of AssemblyPattern::block_matrix(). xbar would
-   * add -(1 (x) G + G^T (x) 1)/(3 NP) with G the derivative of sum_q w_q a_1 x a_2, which has no sparse pattern and is of the size of the quadrature's error: for
+   * add -(1 (x) G + G^T (x) 1)/(3 NP) with G the derivative of sum_q w_q a_1 x a_2, which has no sparse pattern and is of the size of the quadrature's error:
+   * for
    * displacements that keep xbar it is the same small force on all points.
    */
   SparseMatrix
