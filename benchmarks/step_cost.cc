@@ -157,7 +157,7 @@ namespace
     Entries         result(1);
     for (const Stiffness &stiffness : stiffnesses)
       set_up += measure_implicit(scene, name, x, tangent, stiffness, tau, result);
-    result[0] = seconds(name + " LinearisedShells", set_up / std::size(stiffnesses));
+    result[0] = seconds(name + " LinearisedShell", set_up / std::size(stiffnesses));
     return result;
   }
 
