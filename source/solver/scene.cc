@@ -17,8 +17,11 @@ namespace tanktread
     CapsuleQuadrature
     quadrature(const SceneDescription &scene, const FluidMesh &mesh)
     {
-      return capsule_quadrature(
-        scene.shape, scene.shell_quadrature, scene.solver.interface, mesh.cell_size(mesh.finest_level()), scene.liquids.viscosity_ratio);
+      CapsuleQuadrature result =
+        capsule_quadrature(scene.shape, scene.shell_quadrature, scene.solver.interface, mesh.cell_size(mesh.finest_level()), scene.liquids.viscosity_ratio);
+      if (scene.coupling_quadrature)
+        result.coupling = *scene.coupling_quadrature;
+      return result;
     }
   } // namespace
 

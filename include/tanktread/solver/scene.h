@@ -17,16 +17,17 @@ namespace tanktread
   /** What a scene is made of: all that a run, a benchmark or a test has to say about it. */
   struct SceneDescription
   {
-    Box                             box;
-    Liquids                         liquids;
-    FittedShape                     shape; // of each capsule, about its centre
-    std::optional<ControlPoints>    stress_free;
-    std::vector<Eigen::RowVector3d> centres = {Eigen::RowVector3d::Zero()};
-    ShellParameters                 shell;
-    ShellModuli                     moduli{1., 0.};
-    unsigned int                    shell_quadrature = 3; // points a face
-    FluidMeshParameters             fluid_mesh;
-    SolverParameters                solver;
+    Box                               box;
+    Liquids                           liquids;
+    FittedShape                       shape; // of each capsule, about its centre
+    std::optional<ControlPoints>      stress_free;
+    std::vector<Eigen::RowVector3d>   centres = {Eigen::RowVector3d::Zero()};
+    ShellParameters                   shell;
+    ShellModuli                       moduli{1., 0.};
+    unsigned int                      shell_quadrature = 3; // points a face
+    std::optional<TriangleQuadrature> coupling_quadrature;  // of each face; unless given that which the finest cells ask for
+    FluidMeshParameters               fluid_mesh;
+    SolverParameters                  solver;
   };
 
   /**
