@@ -101,7 +101,8 @@ namespace tanktread
     if (scene.centres.size() > 1 && parameters.scene.viscosity_ratio != 1.)
       {
         std::ostringstream message;
-        message << "Scene/Viscosity ratio is " << parameters.scene.viscosity_ratio << "; allowed with " << scene.centres.size() << " capsules in this version: 1";
+        message << "Scene/Viscosity ratio is " << parameters.scene.viscosity_ratio << "; allowed with " << scene.centres.size()
+                << " capsules in this version: 1";
         throw InputError(message.str());
       }
     check_extent(scene, parameters.fluid_mesh.finest_cell);

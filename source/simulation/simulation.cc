@@ -44,7 +44,7 @@ namespace tanktread
       for (unsigned int d = 0; d < 3; ++d)
         run.box += (d == 0 ? "" : " x ") + number(box.side[d]) + (box.is_periodic(d) ? " periodic" : "");
       run.n_capsules = parameters.placement.centres.size();
-      run.Re             = parameters.scene.reynolds_number;
+      run.Re         = parameters.scene.reynolds_number;
       if (run.Re == 0.)
         run.left_out.push_back("inertia (Re = 0)");
       if (parameters.scene.viscosity_ratio == 1.)
@@ -74,7 +74,7 @@ namespace tanktread
     {
       const bool   is_round = before.taylor_parameter < 1e-4 && after.taylor_parameter < 1e-4;
       const double turn     = is_round ? 0. : std::remainder(after.inclination - before.inclination, dealii::numbers::PI);
-      const double change = std::max({std::abs(after.L - before.L), std::abs(after.B - before.B), std::abs(after.W - before.W), std::abs(turn)});
+      const double change   = std::max({std::abs(after.L - before.L), std::abs(after.B - before.B), std::abs(after.W - before.W), std::abs(turn)});
       return change / length;
     }
   } // namespace
@@ -168,8 +168,7 @@ namespace tanktread
   {
     double fastest = 0.;
     for (std::size_t c = 0; c < state_.capsules.size(); ++c)
-      fastest = std::max(
-        fastest, rate_of_change(memory_.capsules[c].ellipsoid, inertia_ellipsoid(scene_.capsule().surface(), state_.capsules[c].x), length));
+      fastest = std::max(fastest, rate_of_change(memory_.capsules[c].ellipsoid, inertia_ellipsoid(scene_.capsule().surface(), state_.capsules[c].x), length));
     fastest = dealii::Utilities::MPI::broadcast(communicator_, fastest, 0);
     // Three steps in a row: at an extremum of the shape one alone may be quiet.
     memory_.n_quiet_steps = fastest < parameters_.time.steady_tolerance ? memory_.n_quiet_steps + 1 : 0;

@@ -136,11 +136,11 @@ namespace tanktread::oracle
         {
           const auto   place = mesh.place({X(q, 0), X(q, 1), X(q, 2)}, mesh.finest_level());
           const double f_n   = shell.density.row(q).dot(n.row(q));
-          shell.points[place.key.position].push_back({q, place.unit});
+          shell.points[lattice(place.key.position)].push_back({q, place.unit});
           for (int v = 0; v < 8; ++v)
             {
               const double  weight = hat(place.unit, v) * scene_.weights(c)[q];
-              const Lattice here   = vertex(place.key.position, v);
+              const Lattice here   = vertex(lattice(place.key.position), v);
               areas[here] += weight;
               auto &sum = shell.forces.try_emplace(here, Eigen::RowVector4d::Zero()).first->second;
               sum.head<3>() += weight * (shell.density.row(q) - f_n * n.row(q));
@@ -191,7 +191,7 @@ namespace tanktread::oracle
       for (const auto &cell : mesh.triangulation().active_cell_iterators())
         if (cell->is_locally_owned())
           {
-            if (const Lattice position = mesh.key(cell).position; cell->level() == int(mesh.finest_level()) && candidates.count(position))
+            if (const Lattice position = lattice(mesh.key(cell).position); cell->level() == int(mesh.finest_level()) && candidates.count(position))
               add_cell(position, index);
             ++index;
           }

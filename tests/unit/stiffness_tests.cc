@@ -13,7 +13,7 @@ using namespace tanktread;
 
 namespace
 {
-  /** Shell of 162 control points and cells of 10a/32, both twice as fine a level higher; box 10 a, shear, in the middle of the box. */
+  /** Shell of 162 control points and cells of 10a/32, both twice as fine a level higher, three points a face; box 10 a, shear, in the middle of the box. */
   SceneDescription
   described(const ShellParameters &law, const ShellModuli &moduli, const Shape shape, const unsigned int level = 2)
   {
@@ -25,6 +25,7 @@ namespace
     result.shell                  = law;
     result.moduli                 = moduli;
     result.fluid_mesh             = {10. / (8 << level), 2.5, 1.5};
+    result.coupling_quadrature    = triangle_quadrature(3); // for all shapes
     result.solver.interface       = Interface::plain;
     return result;
   }

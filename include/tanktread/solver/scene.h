@@ -17,22 +17,21 @@ namespace tanktread
   /** What a scene is made of: all that a run, a benchmark or a test has to say about it. */
   struct SceneDescription
   {
-    Box                             box;
-    Liquids                         liquids;
-    FittedShape                     shape; // of each capsule, about its centre
-    std::optional<ControlPoints>    stress_free;
-    std::vector<Eigen::RowVector3d> centres = {Eigen::RowVector3d::Zero()};
-    ShellParameters                 shell;
-    ShellModuli                     moduli{1., 0.};
-    unsigned int                    shell_quadrature = 3; // points a face
-    std::optional<Interface>        coupling_points;      // as many of them as this interface needs, where that is not the one of `solver`
-    FluidMeshParameters             fluid_mesh;
-    SolverParameters                solver;
+    Box                               box;
+    Liquids                           liquids;
+    FittedShape                       shape; // of each capsule, about its centre
+    std::optional<ControlPoints>      stress_free;
+    std::vector<Eigen::RowVector3d>   centres = {Eigen::RowVector3d::Zero()};
+    ShellParameters                   shell;
+    ShellModuli                       moduli{1., 0.};
+    unsigned int                      shell_quadrature = 3; // points a face
+    std::optional<TriangleQuadrature> coupling_quadrature;  // of each face; unless given that which the finest cells ask for
+    FluidMeshParameters               fluid_mesh;
+    SolverParameters                  solver;
   };
 
   /**
-   * The objects of a scene and who knows whom: the liquid, the kind of capsule, their coupling, a time level of all unknowns and its solver, with their memory.
-   * The program, the benchmarks and the tests build scenes through this class.
+   * The objects of a scene and who knows whom: the liquid, the kind of capsule, their coupling, a time level of all unknowns and its solver, with their memory. The program, the benchmarks and the tests build scenes through this class.
    * All members but the plain accessors are collective.
    */
   class Scene
