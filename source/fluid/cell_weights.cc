@@ -196,7 +196,9 @@ namespace tanktread
     void
     add_negative_part(const std::array<double, 27> &phi, Tetrahedron t, CondensedQuadrature &quadrature)
     {
-      const auto middle     = std::partition(t.begin(), t.end(), [](const Vertex &v) { return v.phi < 0.; });
+      // By values, not by numbers, so that a cell and its mirror image are divided alike.
+      std::sort(t.begin(), t.end(), [](const Vertex &v, const Vertex &w) { return v.phi < w.phi; });
+      const auto middle     = std::find_if(t.begin(), t.end(), [](const Vertex &v) { return !(v.phi < 0.); });
       const auto n_negative = middle - t.begin();
       if (n_negative == 0)
         return;

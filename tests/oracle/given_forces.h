@@ -143,7 +143,7 @@ namespace tanktread::oracle
   private:
     /** As the octree has it. */
     static double
-    finest_cell(const double side, const FluidMeshParameters &parameters)
+    finest_cell_of(const double side, const FluidMeshParameters &parameters)
     {
       const FluidMesh mesh(MPI_COMM_WORLD, side, parameters);
       return mesh.cell_size(mesh.finest_level());
@@ -164,7 +164,7 @@ namespace tanktread::oracle
       result.shape                   = shape;
       result.centres                 = centres;
       result.moduli                  = {0., 0.};
-      result.coupling_quadrature     = coupling_quadrature(shape.topology, shape.control_points, Interface::enriched, finest_cell(side, mesh));
+      result.coupling_quadrature     = coupling_quadrature(shape.topology, shape.control_points, Interface::enriched, finest_cell_of(side, mesh));
       result.fluid_mesh              = mesh;
       result.solver.interface        = interface;
       return result;
