@@ -42,7 +42,6 @@ namespace tanktread
   SceneParameters::add_parameters(dealii::ParameterHandler &prm)
   {
     using namespace dealii::Patterns;
-    const double positive = std::numeric_limits<double>::min();
     prm.enter_subsection("Scene");
     add_enum_parameter(
       prm,
@@ -70,6 +69,27 @@ namespace tanktread
                       channel_half_width,
                       "H of plane Poiseuille flow: its velocity is zero and its shear rate one at z = -H and H, in a. 0: at the faces of the box.",
                       Double(0.));
+    add_numbers(prm);
+    prm.add_parameter("Box side",
+                      box_side,
+                      "Side of the box, in a, whose middle is the origin: one number, or three along x, y and z.",
+                      List(Double(3.), 1, 3));
+    prm.add_parameter(
+      "Box faces",
+      box_faces,
+      "What holds on the faces of the box across x, y and z. periodic: what leaves on one side comes in on the other; the flow must not change along that axis. "
+      "prescribed: the velocity is that of the undisturbed flow, a wall where that does not pass the face.",
+      List(Selection("periodic|prescribed"), 3, 3));
+    prm.add_parameter("End time", end_time, "The run ends at this time.", Double(0.));
+    prm.leave_subsection();
+  }
+
+
+  void
+  SceneParameters::add_numbers(dealii::ParameterHandler &prm)
+  {
+    using dealii::Patterns::Double;
+    const double positive = std::numeric_limits<double>::min();
     prm.add_parameter(
       "Shear number G",
       shear_number,
@@ -88,18 +108,6 @@ namespace tanktread
                       reynolds_number,
                       "Re = rho gamma a^2 / mu with flow, rho kappa_B / (mu^2 a) without, the same density everywhere; 0: Stokes flow.",
                       Double(0.));
-    prm.add_parameter("Box side",
-                      box_side,
-                      "Side of the box, in a, whose middle is the origin: one number, or three along x, y and z.",
-                      List(Double(3.), 1, 3));
-    prm.add_parameter(
-      "Box faces",
-      box_faces,
-      "What holds on the faces of the box across x, y and z. periodic: what leaves on one side comes in on the other; the flow must not change along that axis. "
-      "prescribed: the velocity is that of the undisturbed flow, a wall where that does not pass the face.",
-      List(Selection("periodic|prescribed"), 3, 3));
-    prm.add_parameter("End time", end_time, "The run ends at this time.", Double(0.));
-    prm.leave_subsection();
   }
 
 

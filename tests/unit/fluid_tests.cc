@@ -204,6 +204,32 @@ TEST(Stokes, AlgebraicMultigridFindsTheSameSolution)
 }
 
 
+TEST(Stokes, SolverDoesNotDependOnTheSizeOfTheLoad)
+{
+  // With loads of any size the solver takes the same iterations; a residual of 1e14 is no reason to start again after each of them.
+  const Problem    problem(MPI_COMM_WORLD, side, 1., 0.5, sphere_points(Point(-0.9, 0.2, 0.), 0.2));
+  const auto      &space = problem.fluid.space();
+  FluidBlockVector rhs;
+  ComponentVector  load;
+  space.reinit(rhs);
+  problem.assembled.reinit(load);
+  add_body_force(Manufactured(), problem.assembled, load);
+  problem.assembled.to_nodes(space, load, rhs);
+  std::vector<unsigned int> iterations;
+  for (const double size : {1., 1e14, 1e-14})
+    {
+      FluidBlockVector x, scaled(rhs);
+      space.reinit(x);
+      scaled *= size / rhs.l2_norm();
+      const LinearReport report = solve_fgmres(problem.fluid.stokes(), problem.fluid.preconditioner(), x, scaled, 1e-6, 200);
+      EXPECT_TRUE(report.converged) << size;
+      iterations.push_back(report.iterations);
+    }
+  EXPECT_EQ(iterations[1], iterations[0]);
+  EXPECT_EQ(iterations[2], iterations[0]);
+}
+
+
 TEST(Stokes, AgreesWithDirectSolver)
 {
   const Problem    problem(MPI_COMM_WORLD, side, 1., 0.5, sphere_points(Point(-0.9, 0.2, 0.), 0.2));

@@ -7,6 +7,7 @@
 #include <tanktread/fluid/krylov_basis.h>
 
 #include <cmath>
+#include <numeric>
 
 namespace tanktread
 {
@@ -96,7 +97,8 @@ namespace tanktread
             const double norm = basis.orthogonalise(v, coefficients);
             problem.append(coefficients, norm);
             ++report.iterations;
-            if (!(norm > 1e-12 * start)) // the space is exhausted, or not a number
+            const double length = std::sqrt(std::inner_product(coefficients.begin(), coefficients.end(), coefficients.begin(), norm * norm)); // of op z
+            if (!(norm > 1e-12 * length)) // the space is exhausted, or not a number
               break;
             basis.append(v, norm);
           }

@@ -81,6 +81,8 @@ namespace tanktread
 
   private:
     void
+    add_numbers(dealii::ParameterHandler &prm);
+    void
     check_flow() const;
     void
     check_box() const;
