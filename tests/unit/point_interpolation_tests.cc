@@ -116,6 +116,33 @@ namespace
       result = std::max(result, std::abs(a[i] - b[i]));
     return result;
   }
+
+  /** The same field in deal.II's numbering, component by component: free nodes from the vector, all others from deal.II's constraints. */
+  std::vector<FluidVector>
+  in_dealii_numbering(const TaylorHoodSpace &space, const ScalarSpace &scalar, const FluidBlockVector &u)
+  {
+    const auto                                  &dofs  = scalar.dofs();
+    const auto                                   order = dealii::FETools::lexicographic_to_hierarchic_numbering<3>(2);
+    std::vector<FluidVector>                     fields(3, FluidVector(scalar.partitioner()));
+    std::vector<dealii::types::global_dof_index> indices(27);
+    unsigned int                                 index = 0;
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          cell->get_dof_indices(indices);
+          const unsigned int *const nodes = space.velocity->cell_nodes(index++);
+          for (unsigned int a = 0; a < 27; ++a)
+            if (nodes[a] < space.velocity->n_owned() && dofs.locally_owned_dofs().is_element(indices[order[a]]))
+              for (unsigned int c = 0; c < 3; ++c)
+                fields[c](indices[order[a]]) = u.block(velocity_block).local_element(3 * nodes[a] + c);
+        }
+    for (FluidVector &field : fields)
+      {
+        scalar.constraints().distribute(field);
+        field.update_ghost_values();
+      }
+    return fields;
+  }
 } // namespace
 
 
@@ -203,28 +230,9 @@ TEST(PointInterpolation, AgreesWithDealiiAtHangingNodesAndPeriodicFaces)
   std::vector<double> values, gradients;
   interpolation.values_and_gradients(u, values, gradients);
 
-  // The same field in deal.II's numbering: free nodes from the vector, all others from deal.II's constraints.
-  const ScalarSpace                            scalar(space.mesh, 2, true);
-  const auto                                  &dofs  = scalar.dofs();
-  const auto                                   order = dealii::FETools::lexicographic_to_hierarchic_numbering<3>(2);
-  std::vector<FluidVector>                     fields(3, FluidVector(scalar.partitioner()));
-  std::vector<dealii::types::global_dof_index> indices(27);
-  unsigned int                                 index = 0;
-  for (const auto &cell : dofs.active_cell_iterators())
-    if (cell->is_locally_owned())
-      {
-        cell->get_dof_indices(indices);
-        const unsigned int *const nodes = space.velocity->cell_nodes(index++);
-        for (unsigned int a = 0; a < 27; ++a)
-          if (nodes[a] < space.velocity->n_owned() && dofs.locally_owned_dofs().is_element(indices[order[a]]))
-            for (unsigned int c = 0; c < 3; ++c)
-              fields[c](indices[order[a]]) = u.block(velocity_block).local_element(3 * nodes[a] + c);
-      }
-  for (FluidVector &field : fields)
-    {
-      scalar.constraints().distribute(field);
-      field.update_ghost_values();
-    }
+  const ScalarSpace              scalar(space.mesh, 2, true);
+  const auto                    &dofs   = scalar.dofs();
+  const std::vector<FluidVector> fields = in_dealii_numbering(space, scalar, u);
 
   const auto &mapping = dealii::StaticMappingQ1<3>::mapping;
   double      error = 0., gradient_error = 0., size = 0.;

@@ -74,19 +74,40 @@ namespace
       }
   }
 
+  /** What is said of the mesh. */
+  std::string
+  message(const TriangleMesh &mesh)
+  {
+    try
+      {
+        check_closed_surface(mesh, "shell.off");
+      }
+    catch (const InputError &error)
+      {
+        return error.what();
+      }
+    return "accepted";
+  }
+
+  /** Of 6 times 6 quadrilaterals, halved. */
+  TriangleMesh
+  faceted_torus()
+  {
+    TriangleMesh torus;
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 6; ++j)
+        {
+          const double u = i * M_PI / 3., v = j * M_PI / 3.;
+          torus.vertices.emplace_back((2 + std::cos(v)) * std::cos(u), (2 + std::cos(v)) * std::sin(u), std::sin(v));
+          const auto id = [](const int k, const int l) { return 6 * (k % 6) + l % 6; };
+          torus.faces.push_back({{id(i, j), id(i + 1, j), id(i + 1, j + 1)}});
+          torus.faces.push_back({{id(i, j), id(i + 1, j + 1), id(i, j + 1)}});
+        }
+    return torus;
+  }
+
   TEST(CheckClosedSurface, SaysWhatIsWrong)
   {
-    const auto message = [](const TriangleMesh &mesh) -> std::string {
-      try
-        {
-          check_closed_surface(mesh, "shell.off");
-        }
-      catch (const InputError &error)
-        {
-          return error.what();
-        }
-      return "accepted";
-    };
     const TriangleMesh good = icosphere(1);
     EXPECT_EQ(message(good), "accepted");
 
@@ -129,16 +150,7 @@ namespace
     mesh.vertices.erase(mesh.vertices.begin() + 42);
     EXPECT_NE(message(mesh).find("touches itself at vertex 0"), std::string::npos) << message(mesh);
 
-    TriangleMesh torus;
-    for (int i = 0; i < 6; ++i)
-      for (int j = 0; j < 6; ++j)
-        {
-          const double u = i * M_PI / 3., v = j * M_PI / 3.;
-          torus.vertices.emplace_back((2 + std::cos(v)) * std::cos(u), (2 + std::cos(v)) * std::sin(u), std::sin(v));
-          const auto id = [](const int k, const int l) { return 6 * (k % 6) + l % 6; };
-          torus.faces.push_back({{id(i, j), id(i + 1, j), id(i + 1, j + 1)}});
-          torus.faces.push_back({{id(i, j), id(i + 1, j + 1), id(i, j + 1)}});
-        }
+    const TriangleMesh torus = faceted_torus();
     EXPECT_NE(message(torus).find("handles"), std::string::npos) << message(torus);
   }
 
