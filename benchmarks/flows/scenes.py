@@ -61,7 +61,7 @@ def settings(name, resolution):
         result["Fluid mesh/Coarsest cell"] = f"{across / 8:g}"
     if name == "wall":
         result["Capsule/Centres"] = f"0, 0, {2 - side / 2:g}"
-        result["Scene/Frame velocity"] = f"{4 - side / 2:g}, 0, 0"  # near that of the capsule, so that the mesh need not follow it
+        result["Scene/Frame velocity"] = f"{2.3 - side / 2:g}, 0, 0"  # near that of the capsule, so that the mesh need not follow it
     if name == "parabola":
         result["Scene/Frame velocity"] = "2.27, 0, 0"
     return result
