@@ -163,7 +163,8 @@ TEST(Simulation, BoxesAwayEverythingIsTheSame)
                         "Time/Step=0.2",
                         "Fluid mesh/Finest cell=0.3125",
                         "Fluid mesh/Band width=1",
-                        "Solver/Newton tolerance=1e-8",
+                        "Solver/Newton tolerance=1e-11",
+                        "Solver/Volume tolerance=1e-12",
                         std::string("Solver/Interface=") + interface,
                         "Capsule/Centres=" + centre});
       };
@@ -175,9 +176,11 @@ TEST(Simulation, BoxesAwayEverythingIsTheSame)
       EXPECT_NE(*std::max_element(cells.begin(), cells.end()), *std::min_element(cells.begin(), cells.end())); // the mesh has followed
       double largest = 0.;
       for (const auto &[name, values] : here.columns)
-        if (name != "wall_time")
+        if (name != "wall_time" && name != "newton_iterations" && name != "linear_iterations")
           {
-            const double shift = name == "x" ? 30. : name == "y" ? -20. : 0., digits = shift == 0. ? 1e-9 : 1.1e-8;
+            // Newton's tolerance, a velocity, leaves more of forces and pressures open: a unit of the pressure jump drives 0.04 h through the shell.
+            const bool   is_force = name[0] == 'S' || name[0] == 'N' || name == "pressure_jump" || name == "intrinsic_viscosity" || name == "dissipation";
+            const double shift = name == "x" ? 30. : name == "y" ? -20. : 0., digits = shift != 0. ? 1.1e-8 : is_force ? 1e-7 : 1e-9;
             for (std::size_t i = 0; i < values.size(); ++i)
               if (!std::isnan(values[i]))
                 {
