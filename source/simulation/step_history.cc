@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <vector>
 
 namespace tanktread
@@ -18,18 +19,52 @@ namespace tanktread
   }
 
 
+  template <typename Formula>
   ShellSteps
-  StepHistory::step(const double length) const
+  StepHistory::each_capsule(const Formula &formula) const
   {
     ShellSteps result;
     for (std::size_t c = 0; c < levels_[0].x.size(); ++c)
       {
-        const ImplicitStep of_capsule = is_second_order() ? bdf2_step(levels_[0].x[c], levels_[1].x[c], length, levels_[0].time - levels_[1].time) :
-                                                            backward_euler_step(levels_[0].x[c], length);
+        const ImplicitStep of_capsule = formula(c);
         result.xhat.push_back(of_capsule.xhat);
         result.tau = of_capsule.tau;
       }
     return result;
+  }
+
+
+  ShellSteps
+  StepHistory::step(const double length) const
+  {
+    if (starts())
+      throw std::logic_error("StepHistory: a step of BDF2 looks back to two levels.");
+    return each_capsule([&](const std::size_t c) {
+      return is_second_order() ? bdf2_step(levels_[0].x[c], levels_[1].x[c], length, levels_[0].time - levels_[1].time) :
+                                 backward_euler_step(levels_[0].x[c], length);
+    });
+  }
+
+
+  ShellSteps
+  StepHistory::first_stage(const double length) const
+  {
+    return each_capsule([&](const std::size_t c) { return sdirk2_stage(levels_[0].x[c], length); });
+  }
+
+
+  ShellSteps
+  StepHistory::second_stage(const double length, const ShellFields &displacement) const
+  {
+    return each_capsule([&](const std::size_t c) { return sdirk2_step(levels_[0].x[c], displacement[c], length); });
+  }
+
+
+  std::array<double, 2>
+  StepHistory::second_stage_weights()
+  {
+    const double stage = (1. - sdirk2_gamma) / sdirk2_gamma;
+    return {{stage, 1. - stage}};
   }
 
 

@@ -56,32 +56,71 @@ namespace tanktread
 
 
   State
-  TimeStepper::guess(const State &state, const double length) const
+  TimeStepper::extrapolation(const State &state, const State &before, const double ratio) const
   {
-    if (!memory_.previous_state)
-      return state;
-    State now = state;
+    State now = state, past = before;
     scene_.level().carry_pressure(now);
-    scene_.level().carry_pressure(*memory_.previous_state);
-    return extrapolated(now, *memory_.previous_state, length / memory_.previous_length);
+    scene_.level().carry_pressure(past);
+    return extrapolated(now, past, ratio);
+  }
+
+
+  NewtonReport
+  TimeStepper::solve_level(const ShellSteps            &steps,
+                           const double                 time,
+                           const std::array<double, 2> &weights,
+                           const State                 &last,
+                           const State                 *before,
+                           State                       &next)
+  {
+    FluidVector uhat;
+    if (scene_.level().has_inertia())
+      {
+        uhat = last.fluid.block(velocity_block);
+        uhat *= weights[0];
+        if (weights[1] != 0.)
+          uhat.add(weights[1], before->fluid.block(velocity_block));
+      }
+    return scene_.solver().solve(next, {steps.xhat, steps.tau, time, &uhat});
+  }
+
+
+  NewtonReport
+  TimeStepper::starting_step(const State &state, const double time, const double length, State &next)
+  {
+    const double stage_length = sdirk2_gamma * length;
+    State        stage        = state;
+    NewtonReport first        = solve_level(memory_.history.first_stage(length), time + stage_length, {{1., 0.}}, state, nullptr, stage);
+    if (!first.converged || scene_.coupling().jumps().n_coarse_cut_cells() > 0)
+      {
+        next = std::move(stage);
+        return first;
+      }
+    // What the velocities have moved: not what sets the volume right, which the second stage does once for the whole step.
+    const ShellConfigurations &shells = scene_.level().shells(stage);
+    ShellFields                displacement;
+    for (std::size_t c = 0; c < shells.size(); ++c)
+      displacement.push_back(stage.capsules[c].x - state.capsules[c].x - stage.capsules[c].volume_shift * shells[c]->normal_field());
+    next                = extrapolation(stage, state, length / stage_length - 1.);
+    NewtonReport second = solve_level(
+      memory_.history.second_stage(length, displacement), time + length, memory_.history.second_stage_weights(), stage, &state, next);
+    second.newton_iterations += first.newton_iterations;
+    second.linear_iterations += first.linear_iterations;
+    return second;
   }
 
 
   NewtonReport
   TimeStepper::try_step(const State &state, const double time, const double length, const bool from_extrapolation, State &next)
   {
-    const ShellSteps steps = memory_.history.step(length);
-    next                   = from_extrapolation ? guess(state, length) : state;
-    FluidVector uhat;
-    if (scene_.level().has_inertia())
+    NewtonReport report;
+    if (memory_.history.starts())
+      report = starting_step(state, time, length, next);
+    else
       {
-        const std::array<double, 2> weights = memory_.history.weights(length);
-        uhat                                = state.fluid.block(velocity_block);
-        uhat *= weights[0];
-        if (weights[1] != 0.)
-          uhat.add(weights[1], memory_.previous_state->fluid.block(velocity_block));
+        next   = from_extrapolation ? extrapolation(state, *memory_.previous_state, length / memory_.previous_length) : state;
+        report = solve_level(memory_.history.step(length), time + length, memory_.history.weights(length), state, memory_.previous_state.get(), next);
       }
-    const NewtonReport report = scene_.solver().solve(next, {steps.xhat, steps.tau, time + length, &uhat});
     if (!report.converged)
       {
         std::ostringstream text;

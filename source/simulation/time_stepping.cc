@@ -15,7 +15,7 @@ namespace tanktread
                        "Scheme",
                        scheme,
                        {{"BDF2", TimeScheme::bdf2}, {"backward Euler", TimeScheme::backward_euler}},
-                       "BDF2: second order, variable steps, first step backward Euler; backward Euler: first order.");
+                       "BDF2: second order, variable steps, started by one of SDIRK2, which is solved in two stages; backward Euler: first order.");
     prm.add_parameter(
       "Step",
       step,
@@ -45,5 +45,19 @@ namespace tanktread
   {
     const double omega = dt / dt_previous, denominator = 1. + 2. * omega;
     return {((1. + omega) * (1. + omega) * x_n - omega * omega * x_previous) / denominator, dt * (1. + omega) / denominator};
+  }
+
+
+  ImplicitStep
+  sdirk2_stage(const ControlPoints &x_n, const double dt)
+  {
+    return backward_euler_step(x_n, sdirk2_gamma * dt);
+  }
+
+
+  ImplicitStep
+  sdirk2_step(const ControlPoints &x_n, const ControlPoints &displacement, const double dt)
+  {
+    return {x_n + (1. - sdirk2_gamma) / sdirk2_gamma * displacement, sdirk2_gamma * dt};
   }
 } // namespace tanktread

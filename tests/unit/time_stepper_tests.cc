@@ -132,6 +132,31 @@ TEST(TimeStepper, AStepThatCannotBeDoneLeavesTheStateAsItWas)
 }
 
 
+TEST(TimeStepper, TheFirstStepIsOfSecondOrder)
+{
+  // Against eight steps over the same time: the error of a step goes with the third power of its length, and is far below that of backward Euler.
+  const SceneDescription description = small_scene({1., 0.02}, 1., {}, tight(1e-9, 1e-3));
+  const auto             result      = [&](const double end, const unsigned int n, const TimeScheme scheme) {
+    SteppedScene run(description, steps(end / n, scheme));
+    run.start();
+    for (unsigned int i = 0; i < n; ++i)
+      run.stepper.step(run.scene.state, end / n * i, false);
+    return positions(run.scene.state);
+  };
+  std::vector<double> errors;
+  for (const double length : {0.2, 0.1})
+    {
+      const ShellFields fine = result(length, 8, TimeScheme::bdf2);
+      errors.push_back(largest_difference(result(length, 1, TimeScheme::bdf2), fine));
+      const double euler = largest_difference(result(length, 1, TimeScheme::backward_euler), fine);
+      if (is_root())
+        std::cout << "error of a step of " << length << ": " << errors.back() << ", of backward Euler " << euler << std::endl;
+      EXPECT_LT(errors.back(), 0.1 * euler);
+    }
+  EXPECT_GT(std::log2(errors[0] / errors[1]), 2.5);
+}
+
+
 TEST(TimeStepper, StepsEndAtTheEndTime)
 {
   SteppedScene run(small_scene({5., 0.2}, 1., {}, tight(1e-5, 0.1)), steps(0.1), 0.14);
@@ -143,7 +168,7 @@ TEST(TimeStepper, StepsEndAtTheEndTime)
 
 TEST(TimeStepper, StepsWithALargeLocalErrorAreRepeated)
 {
-  // Two equal steps of backward Euler and BDF2 set the history; the third one may be judged.
+  // Two equal steps set the history; the third one may be judged.
   TimeParameters time = steps(0.2);
   time.tolerance      = 1e-4;
   SteppedScene run(small_scene({20., 0.2}, 1., ellipsoid(1.4, 1.2, 1.), tight(1e-6, 0.1)), time);

@@ -38,6 +38,26 @@ TEST(TimeStepping, Bdf2IsExactForQuadraticMotionAtAnyRatioOfSteps)
 }
 
 
+TEST(TimeStepping, Sdirk2IsExactForQuadraticMotionAndDampsWhatIsStiff)
+{
+  const auto   x = [](const double t) { return 1. + 2. * t - 3. * t * t; };
+  const auto   v = [](const double t) { return 2. - 6. * t; };
+  const double t = 0.7, dt = 0.3;
+
+  const ImplicitStep  stage        = sdirk2_stage(one_point(x(t)), dt);
+  const ControlPoints displacement = one_point(stage.tau * v(t + stage.tau));
+  const ImplicitStep  step         = sdirk2_step(one_point(x(t)), displacement, dt);
+  EXPECT_NEAR(step.xhat(0, 0) + step.tau * v(t + dt), x(t + dt), 1e-14);
+
+  // x' = -k x with k dt = 1e6: what is left after the step.
+  const double        k         = 1e6 / dt;
+  const ControlPoints x_stage   = sdirk2_stage(one_point(1.), dt).xhat / (1. + k * stage.tau);
+  const ImplicitStep  last      = sdirk2_step(one_point(1.), x_stage - one_point(1.), dt);
+  const double        remaining = (last.xhat / (1. + k * last.tau))(0, 0);
+  EXPECT_LT(std::abs(remaining), 1e-5);
+}
+
+
 TEST(TimeStepping, OrdersOnADecayingMotion)
 {
   // x' = -x over one unit of time; the implicit equation is solved by hand.
@@ -46,14 +66,27 @@ TEST(TimeStepping, OrdersOnADecayingMotion)
     ControlPoints x  = one_point(1.), previous;
     for (unsigned int i = 0; i < n; ++i)
       {
-        const ImplicitStep step = second_order && i > 0 ? bdf2_step(x, previous, dt, dt) : backward_euler_step(x, dt);
+        ImplicitStep step = second_order && i > 0 ? bdf2_step(x, previous, dt, dt) : backward_euler_step(x, dt);
+        if (second_order && i == 0)
+          {
+            const ImplicitStep stage = sdirk2_stage(x, dt);
+            step                     = sdirk2_step(x, stage.xhat / (1. + stage.tau) - x, dt);
+          }
         previous                = x;
         x                       = step.xhat / (1. + step.tau);
       }
     return std::abs(x(0, 0) - std::exp(-1.));
   };
+  const auto error_of_first_step = [](const double dt) {
+    StepHistory history{TimeParameters()};
+    history.add(0., {one_point(1.)});
+    EXPECT_TRUE(history.starts());
+    const ShellSteps stage = history.first_stage(dt), step = history.second_stage(dt, {stage.xhat[0] / (1. + stage.tau) - one_point(1.)});
+    return std::abs(step.xhat[0](0, 0) / (1. + step.tau) - std::exp(-dt));
+  };
   EXPECT_NEAR(std::log2(error(40, false) / error(80, false)), 1., 0.05);
   EXPECT_NEAR(std::log2(error(40, true) / error(80, true)), 2., 0.1);
+  EXPECT_NEAR(std::log2(error_of_first_step(0.05) / error_of_first_step(0.025)), 3., 0.1);
 }
 
 

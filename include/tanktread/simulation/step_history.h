@@ -31,20 +31,37 @@ namespace tanktread
     void
     add(double time, const ShellFields &x);
 
-    /** The scheme for a step of `length` from the last level: backward Euler while there is only one. */
+    /** Whether the next step has no two levels to look back to though the scheme wants them: it is one of SDIRK2, first_stage() and then second_stage(). */
+    bool
+    starts() const
+    {
+      return parameters_.scheme == TimeScheme::bdf2 && levels_.size() == 1;
+    }
+
+    /** The scheme for a step of `length` from the last level; not where it starts(). */
     ShellSteps
     step(double length) const;
 
-    /** What weighs the last level and the one before in ShellSteps::xhat, for other fields with the same scheme. */
+    /** The stages of a step of SDIRK2; `displacement` is that by the velocities of the first stage, tau U. */
+    ShellSteps
+    first_stage(double length) const;
+    ShellSteps
+    second_stage(double length, const ShellFields &displacement) const;
+
+    /** What weighs the last level and the one before in ShellSteps::xhat of step(), for other fields with the same scheme. */
     std::array<double, 2>
     weights(double length) const;
+
+    /** The same of second_stage(): what weighs the first stage and the last level. */
+    static std::array<double, 2>
+    second_stage_weights();
 
     /**
      * Local error of a step to x (root mean square over the control points, in a), from the divided differences of the positions,
      *
      *     backward Euler: 1/2 dt^2 x'',   BDF2: (1 + omega)^2 / (6 omega (1 + 2 omega)) dt^3 x''',
      *
-     * the terms by which the exact motion misses the scheme. Zero while there are too few levels to tell.
+     * the terms by which the exact motion misses the scheme. Zero while there are too few levels to tell, as at the start.
      */
     double
     local_error(double length, const ShellFields &x) const;
@@ -68,8 +85,13 @@ namespace tanktread
     bool
     is_second_order() const
     {
-      return parameters_.scheme == TimeScheme::bdf2 && levels_.size() > 1;
+      return parameters_.scheme == TimeScheme::bdf2;
     }
+
+    /** That formula for each capsule, with its number. */
+    template <typename Formula>
+    ShellSteps
+    each_capsule(const Formula &formula) const;
 
     struct Level
     {

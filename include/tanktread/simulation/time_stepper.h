@@ -8,6 +8,7 @@
 #include <tanktread/simulation/run_memory.h>
 #include <tanktread/solver/scene.h>
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -74,6 +75,12 @@ namespace tanktread
   private:
     StepResult
     implicit_step(State &state, double time, bool mesh_is_new);
+    /** Solves for the level at `time`; `next` is the guess, and then the level. With inertia the velocities `weights` times those of `last` and `before` go into it. */
+    NewtonReport
+    solve_level(const ShellSteps &steps, double time, const std::array<double, 2> &weights, const State &last, const State *before, State &next);
+    /** The two stages of a step that starts the scheme. A first stage beyond the finest cells is left in `next`. */
+    NewtonReport
+    starting_step(const State &state, double time, double length, State &next);
     /** One attempt at a step: sets `next` to the new level, or says in the log why not. */
     NewtonReport
     try_step(const State &state, double time, double length, bool from_extrapolation, State &next);
@@ -87,8 +94,9 @@ namespace tanktread
     explicit_step(State &state, double time);
     void
     check_explicit_step(const ControlPoints &displacement, double length) const;
+    /** Linear in time through two states, both with pressures of the present sides of vertices; `ratio` of the step to that between them. */
     State
-    guess(const State &state, double length) const;
+    extrapolation(const State &state, const State &before, double ratio) const;
 
     const TimeParameters parameters_;
     const TimeCoupling   coupling_;

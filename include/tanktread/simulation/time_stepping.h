@@ -50,6 +50,20 @@ namespace tanktread
    */
   ImplicitStep
   bdf2_step(const ControlPoints &x_n, const ControlPoints &x_previous, double dt, double dt_previous);
+
+  /** 1 - 1 / sqrt(2): the implicit part of each stage of SDIRK2, Alexander, SIAM J. Numer. Anal. 14, 1006 (1977). */
+  inline constexpr double sdirk2_gamma = 0.29289321881345247560;
+
+  /**
+   * SDIRK2, second order from one level and L-stable, by two stages. The first is backward Euler over a part of the step, the second goes on with its velocity
+   * U' = dx/dt, given as the displacement d = gamma dt U' that it made:
+   *
+   *     stage: xhat = x_n,   tau = gamma dt;      step: xhat = x_n + (1 - gamma) / gamma d,   tau = gamma dt.
+   */
+  ImplicitStep
+  sdirk2_stage(const ControlPoints &x_n, double dt);
+  ImplicitStep
+  sdirk2_step(const ControlPoints &x_n, const ControlPoints &displacement, double dt);
 } // namespace tanktread
 
 #endif
