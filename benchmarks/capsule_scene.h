@@ -96,7 +96,7 @@ namespace tanktread
       if (has_previous())
         {
           scene_.level().carry_pressure(previous_);
-          guess = extrapolated(state_, previous_, 1.);
+          guess = combination({2., -1.}, {&state_, &previous_});
         }
       const NewtonReport report = scene_.solver().solve(guess, {{x_}, dt_});
       if (!report.converged)

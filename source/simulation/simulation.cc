@@ -8,7 +8,6 @@
 #include <tanktread/base/mpi_errors.h>
 #include <tanktread/base/output_file.h>
 #include <tanktread/base/output_folder.h>
-#include <tanktread/fluid/field_transfer.h>
 #include <tanktread/simulation/scene_description.h>
 #include <tanktread/simulation/simulation.h>
 
@@ -94,34 +93,23 @@ namespace tanktread
   }
 
 
-  void
+  unsigned int
   Simulation::refine_around_shells(const std::vector<ShellFields> &others)
   {
-    std::unique_ptr<const FieldTransfer> transfer;
-    std::vector<FluidBlockVector *>      flows;
-    for (State *const level : stepper_.levels(state_))
-      {
-        for (CapsuleState &capsule : level->capsules)
-          capsule.sides.clear(); // of the old mesh's vertices
-        flows.push_back(&level->fluid);
-      }
-    if (scene_.level().has_inertia() && memory_.n_steps > 0)
-      transfer = std::make_unique<FieldTransfer>(scene_.fluid().space(), flows);
-    scene_.refine_around(state_, others);
-    if (transfer)
-      return transfer->interpolate(scene_.fluid().space(), flows);
-    stepper_.forget_flow();
-    scene_.fluid().space().reinit(state_.fluid);
+    stepper_.refine_around(state_, others);
+    // The explicit coupling moves the shells with this flow; implicit steps only begin with it.
+    return parameters_.solver.coupling == TimeCoupling::explicit_euler ? scene_.solver().solve_flow(state_, memory_.time) : 0;
   }
 
 
   unsigned int
-  Simulation::flow_on_new_mesh()
+  Simulation::first_flow()
   {
+    scene_.refine_around(state_);
+    scene_.fluid().space().reinit(state_.fluid);
     if (!scene_.level().has_inertia())
       return scene_.solver().solve_flow(state_, memory_.time);
-    if (memory_.n_steps == 0)
-      scene_.solver().start_undisturbed(state_);
+    scene_.solver().start_undisturbed(state_);
     return 0;
   }
 
@@ -147,8 +135,7 @@ namespace tanktread
   Simulation::start()
   {
     StepResult first;
-    refine_around_shells();
-    first.linear_iterations = flow_on_new_mesh();
+    first.linear_iterations = first_flow();
 
     const FluidMesh   &mesh    = scene_.fluid().mesh();
     const Capsule     &capsule = scene_.capsule();
@@ -284,8 +271,7 @@ namespace tanktread
     if (result.beyond_mesh.empty())
       return result;
     log_.line("Step of length " + number(result.length) + " repeated on a mesh around its end too: the shells have left the finest cells.");
-    refine_around_shells({result.beyond_mesh});
-    const unsigned int remeshing = flow_on_new_mesh();
+    const unsigned int remeshing = refine_around_shells({result.beyond_mesh});
     StepResult         again     = stepper_.step(state_, memory_.time, true);
     again.newton_iterations += result.newton_iterations;
     again.linear_iterations += result.linear_iterations + remeshing;
@@ -310,10 +296,7 @@ namespace tanktread
         if (steady)
           log_.line("Steady: axes and inclination have changed slower than Time/Steady tolerance in three steps.");
         if (!last && !scene_.covers(state_))
-          {
-            refine_around_shells();
-            memory_.remeshing_iterations = flow_on_new_mesh();
-          }
+          memory_.remeshing_iterations = refine_around_shells();
       }
     return steady ? "steady" : "done";
   }

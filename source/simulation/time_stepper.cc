@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <tanktread/base/exceptions.h>
+#include <tanktread/fluid/field_transfer.h>
 #include <tanktread/simulation/time_stepper.h>
 
 #include <algorithm>
@@ -31,20 +32,28 @@ namespace tanktread
   }
 
 
-  std::vector<State *>
-  TimeStepper::levels(State &state)
-  {
-    std::vector<State *> result = {&state};
-    if (memory_.previous_state)
-      result.push_back(memory_.previous_state.get());
-    return result;
-  }
-
-
   void
-  TimeStepper::forget_flow()
+  TimeStepper::refine_around(State &state, const std::vector<ShellFields> &others)
   {
-    memory_.previous_state.reset();
+    // All pressures those of the sides on which the vertices are now: the sides themselves do not outlive the mesh.
+    scene_.level().move_points(state);
+    std::vector<State *>            levels = {&state};
+    std::vector<FluidBlockVector *> flows  = {&state.fluid};
+    for (StepMemory::Level &level : memory_.previous)
+      {
+        scene_.level().carry_pressure(level.state);
+        levels.push_back(&level.state);
+        flows.push_back(&level.state.fluid);
+      }
+    for (State *const level : levels)
+      for (CapsuleState &capsule : level->capsules)
+        capsule.sides.clear();
+    const FieldTransfer transfer(scene_.fluid().space(), flows);
+    scene_.refine_around(state, others);
+    transfer.interpolate(scene_.fluid().space(), flows);
+    scene_.level().move_points(state);
+    for (StepMemory::Level &level : memory_.previous)
+      scene_.level().carry_pressure(level.state);
   }
 
 
@@ -56,12 +65,34 @@ namespace tanktread
 
 
   State
-  TimeStepper::extrapolation(const State &state, const State &before, const double ratio) const
+  TimeStepper::extrapolation(const std::vector<std::pair<double, const State *>> &levels, const double time) const
   {
-    State now = state, past = before;
-    scene_.level().carry_pressure(now);
-    scene_.level().carry_pressure(past);
-    return extrapolated(now, past, ratio);
+    std::vector<State>         carried;
+    std::vector<const State *> states;
+    std::vector<double>        weights;
+    for (const auto &[now, state] : levels)
+      {
+        carried.push_back(*state);
+        scene_.level().carry_pressure(carried.back());
+        double weight = 1.;
+        for (const auto &[other, unused] : levels)
+          if (other != now)
+            weight *= (time - other) / (now - other);
+        weights.push_back(weight);
+      }
+    for (const State &state : carried)
+      states.push_back(&state);
+    return combination(weights, states);
+  }
+
+
+  State
+  TimeStepper::guess(const State &state, const double now, const double time) const
+  {
+    std::vector<std::pair<double, const State *>> levels = {{now, &state}};
+    for (const StepMemory::Level &level : memory_.previous)
+      levels.emplace_back(level.time, &level.state);
+    return extrapolation(levels, time);
   }
 
 
@@ -101,7 +132,7 @@ namespace tanktread
     ShellFields                displacement;
     for (std::size_t c = 0; c < shells.size(); ++c)
       displacement.push_back(stage.capsules[c].x - state.capsules[c].x - stage.capsules[c].volume_shift * shells[c]->normal_field());
-    next                = extrapolation(stage, state, length / stage_length - 1.);
+    next                = extrapolation({{time + stage_length, &stage}, {time, &state}}, time + length);
     NewtonReport second = solve_level(
       memory_.history.second_stage(length, displacement), time + length, memory_.history.second_stage_weights(), stage, &state, next);
     second.newton_iterations += first.newton_iterations;
@@ -118,8 +149,9 @@ namespace tanktread
       report = starting_step(state, time, length, next);
     else
       {
-        next   = from_extrapolation ? extrapolation(state, *memory_.previous_state, length / memory_.previous_length) : state;
-        report = solve_level(memory_.history.step(length), time + length, memory_.history.weights(length), state, memory_.previous_state.get(), next);
+        next                = from_extrapolation ? guess(state, time, time + length) : state;
+        const State *before = memory_.previous.empty() ? nullptr : &memory_.previous.front().state;
+        report              = solve_level(memory_.history.step(length), time + length, memory_.history.weights(length), state, before, next);
       }
     if (!report.converged)
       {
@@ -140,7 +172,7 @@ namespace tanktread
     std::string failure;
     for (const bool from_extrapolation : {true, false})
       {
-        if (from_extrapolation && !(memory_.previous_state && first_attempt))
+        if (from_extrapolation && (memory_.previous.empty() || !first_attempt))
           continue;
         const NewtonReport report = try_step(state, time, result.length, from_extrapolation, next);
         result.newton_iterations += report.newton_iterations;
@@ -176,9 +208,10 @@ namespace tanktread
           return false;
         memory_.next_length = shortest;
       }
-    memory_.previous_state  = std::make_unique<State>(std::move(state));
-    memory_.previous_length = length;
-    state                   = std::move(next);
+    memory_.previous.push_front({time, std::move(state)});
+    if (memory_.previous.size() > 2)
+      memory_.previous.pop_back();
+    state = std::move(next);
     memory_.history.add(time + length, positions(state));
     return true;
   }

@@ -43,18 +43,27 @@ namespace tanktread
 
 
   State
-  extrapolated(const State &state, const State &before, const double ratio)
+  combination(const std::vector<double> &weights, const std::vector<const State *> &states)
   {
-    State result = state;
-    for (std::size_t c = 0; c < state.capsules.size(); ++c)
+    State result = *states[0];
+    result.fluid *= weights[0];
+    for (CapsuleState &capsule : result.capsules)
       {
-        CapsuleState       &capsule = result.capsules[c];
-        const CapsuleState &now = state.capsules[c], &past = before.capsules[c];
-        capsule.x += ratio * (now.x - past.x);
-        capsule.force += ratio * (now.force - past.force);
-        capsule.pressure_jump += ratio * (now.pressure_jump - past.pressure_jump);
+        capsule.x *= weights[0];
+        capsule.force *= weights[0];
+        capsule.pressure_jump *= weights[0];
       }
-    result.fluid.sadd(1. + ratio, -ratio, before.fluid);
+    for (std::size_t i = 1; i < states.size(); ++i)
+      {
+        result.fluid.add(weights[i], states[i]->fluid);
+        for (std::size_t c = 0; c < result.capsules.size(); ++c)
+          {
+            const CapsuleState &further = states[i]->capsules[c];
+            result.capsules[c].x += weights[i] * further.x;
+            result.capsules[c].force += weights[i] * further.force;
+            result.capsules[c].pressure_jump += weights[i] * further.pressure_jump;
+          }
+      }
     return result;
   }
 } // namespace tanktread

@@ -97,7 +97,7 @@ TEST(TimeStepper, RejectedStepsAreHalvedAndGrowBack)
       EXPECT_GE(halvings, -1e-12);
       EXPECT_TRUE(result.beyond_mesh.empty());
       EXPECT_EQ(run.memory.next_length, std::min(0.2, 1.5 * result.length));
-      EXPECT_EQ(run.memory.previous_length, result.length);
+      EXPECT_EQ(run.memory.previous.front().time, time);
       n_rejected += halvings > 0.5;
       n_grown += result.length > length;
       length = result.length;
@@ -207,10 +207,7 @@ TEST(TimeStepper, AStepBeyondTheFinestCellsIsReported)
   EXPECT_GT(beyond.newton_iterations, 0u);
 
   // On a mesh around both ends the same step is made...
-  run.scene.refine_around(run.scene.state, {beyond.beyond_mesh});
-  run.stepper.forget_flow();
-  run.scene.fluid().space().reinit(run.scene.state.fluid);
-  run.scene.solver().solve_flow(run.scene.state);
+  run.stepper.refine_around(run.scene.state, {beyond.beyond_mesh});
   const StepResult again = run.stepper.step(run.scene.state, 0., false);
   EXPECT_TRUE(again.beyond_mesh.empty());
   EXPECT_EQ(again.length, length);

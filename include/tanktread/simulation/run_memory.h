@@ -10,7 +10,7 @@
 #include <tanktread/solver/state.h>
 #include <tanktread/surface/surface_geometry.h>
 
-#include <memory>
+#include <deque>
 #include <vector>
 
 namespace tanktread
@@ -24,10 +24,15 @@ namespace tanktread
       , next_length(history.first_length())
     {}
 
-    StepHistory            history;
-    double                 next_length;
-    std::unique_ptr<State> previous_state; // none at the start and right after a change of mesh
-    double                 previous_length = 0.;
+    struct Level
+    {
+      double time;
+      State  state;
+    };
+
+    StepHistory       history;
+    double            next_length;
+    std::deque<Level> previous; // levels before the present one, newest first, two at most; their flows are on the present mesh
   };
 
   /** One capsule as outputs remember it. */

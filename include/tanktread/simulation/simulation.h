@@ -41,12 +41,12 @@ namespace tanktread
     /** One step, on a mesh that it fits. */
     StepResult
     step();
-    /** New mesh around the present shells, and others if there are any, with a zero flow, or with those that inertia remembers. */
-    void
-    refine_around_shells(const std::vector<ShellFields> &others = {});
-    /** The flow there, to start with or to extrapolate from: Stokes flow, or with inertia what has been carried over. Returns the linear iterations. */
+    /** The first mesh and the flow on it: Stokes flow, or with inertia that of a liquid at rest. Returns the linear iterations. */
     unsigned int
-    flow_on_new_mesh();
+    first_flow();
+    /** New mesh around the present shells, and others if there are any, with the flows carried over. Returns the linear iterations. */
+    unsigned int
+    refine_around_shells(const std::vector<ShellFields> &others = {});
     /** Whether all shapes have hardly changed in three steps; the same on all ranks. */
     bool
     is_steady(double length);

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tanktread
@@ -41,18 +42,11 @@ namespace tanktread
     start(double time, const ShellFields &x);
 
     /**
-     * What the time scheme looks back to: `state`, the last level, and the one before, if there is one. Where there is inertia their flows are to be carried
-     * over changes of mesh.
-     */
-    std::vector<State *>
-    levels(State &state);
-
-    /**
-     * To be called when the fluid's mesh has changed and the flows of levels() are not carried over: nothing is extrapolated over that. The positions of the
-     * shells stay known to the scheme.
+     * Adapts the fluid's mesh to the shells of `state`, and to `others`, as Scene::refine_around(), and carries over the flows of `state`, which has one, and of
+     * the levels before it: what the guess of the next step is made of and, where there is inertia, what the scheme looks back to.
      */
     void
-    forget_flow();
+    refine_around(State &state, const std::vector<ShellFields> &others = {});
 
     /**
      * One step from `time`, not beyond the end time. Throws NumericalError, with `state` as it was, when no length down to a thousandth of Time/Step can be
@@ -94,9 +88,12 @@ namespace tanktread
     explicit_step(State &state, double time);
     void
     check_explicit_step(const ControlPoints &displacement, double length) const;
-    /** Linear in time through two states, both with pressures of the present sides of vertices; `ratio` of the step to that between them. */
+    /** The polynomial in time through these levels, with the pressures of the present sides of vertices, at `time`. */
     State
-    extrapolation(const State &state, const State &before, double ratio) const;
+    extrapolation(const std::vector<std::pair<double, const State *>> &levels, double time) const;
+    /** From `state` at `now` and the levels before it, which there are. */
+    State
+    guess(const State &state, double now, double time) const;
 
     const TimeParameters parameters_;
     const TimeCoupling   coupling_;

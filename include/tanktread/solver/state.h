@@ -42,9 +42,9 @@ namespace tanktread
   void
   add(State &state, double factor, const State &increment);
 
-  /** state + ratio (state - before), but for sigma and the sides, which stay. */
+  /** Sum of weights times states, but for sigma and the sides, which are those of the first. */
   State
-  extrapolated(const State &state, const State &before, double ratio);
+  combination(const std::vector<double> &weights, const std::vector<const State *> &states);
 } // namespace tanktread
 
 #endif
