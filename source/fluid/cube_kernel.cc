@@ -130,6 +130,31 @@ namespace tanktread
 
 
     template <typename Number, int n_cubes>
+    struct Divergence
+    {
+      const Number *u;
+      Number       *y;
+
+      TANKTREAD_INLINE void
+      operator()(const double *size, const unsigned int *nodes, const unsigned int *p_nodes, const unsigned int) const
+      {
+        using V = Lanes<Number, n_cubes>;
+        V       v[27], q[8];
+        const V area = sizes<Number, n_cubes>(size, 2) * Number(1. / 216);
+        for (int a = 0; a < 27; ++a)
+          v[a] = gather<Number, n_cubes>(u, nodes + a);
+        contract<Number, n_cubes>(v, q);
+        for (int j = 0; j < 8; ++j)
+          {
+            const V part = area * q[j];
+            for (int cube = 0; cube < n_cubes; ++cube)
+              y[p_nodes[8 * cube + j]] += part[4 * cube] + part[4 * cube + 1] + part[4 * cube + 2];
+          }
+      }
+    };
+
+
+    template <typename Number, int n_cubes>
     struct Stokes
     {
       const Number *u, *p;
@@ -209,6 +234,14 @@ namespace tanktread
 
   template <typename Number>
   void
+  add_divergence(const InstructionSet set, const Cubes &cubes, const Number *u, Number *y_p)
+  {
+    run<Divergence, Number>(set, cubes, u, y_p);
+  }
+
+
+  template <typename Number>
+  void
   add_pressure_mass(const Cubes &cubes, const Number *p, Number *y_p)
   {
     // Along each direction the mass matrix of the unit interval is (1 + J)/6, J being all ones.
@@ -275,6 +308,7 @@ namespace tanktread
   template void add_linear_laplace(const Cubes &, const Number *, Number *);                                   \
   template void add_stokes(InstructionSet, const Cubes &, const Number *, const Number *, Number *, Number *); \
   template void add_pressure_gradient(InstructionSet, const Cubes &, const Number *, Number *);                \
+  template void add_divergence(InstructionSet, const Cubes &, const Number *, Number *);                       \
   template void add_pressure_mass(const Cubes &, const Number *, Number *);
   TANKTREAD_INSTANTIATE(float)
   TANKTREAD_INSTANTIATE(double)

@@ -114,6 +114,13 @@ namespace tanktread
   }
 
 
+  std::vector<double>
+  mass_diagonal(const NodeSpace &space)
+  {
+    return space.diagonal(unit_cube_matrix(0., 1.), 3);
+  }
+
+
   template class LaplaceOperator<float>;
   template class LaplaceOperator<double>;
 } // namespace tanktread

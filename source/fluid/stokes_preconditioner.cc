@@ -4,7 +4,6 @@
 #include <tanktread/fluid/stokes_preconditioner.h>
 
 #include <algorithm>
-#include <stdexcept>
 #include <utility>
 
 namespace tanktread
@@ -16,11 +15,11 @@ namespace tanktread
   } // namespace
 
 
-  StokesPreconditioner::StokesPreconditioner(const TaylorHoodSpace &space, Multigrid<float> &multigrid, Multigrid<float> *const pressure_multigrid)
+  StokesPreconditioner::StokesPreconditioner(const TaylorHoodSpace &space, Multigrid<float> &multigrid, Multigrid<float> &pressure_multigrid)
     : space_(space)
     , multigrid_(multigrid)
-    , pressure_multigrid_(pressure_multigrid)
     , instructions_(best_instruction_set())
+    , projection_(space, pressure_multigrid)
     , pressure_mass_(*space.pressure)
     , pressure_mass_inverse_(pressure_mass_, *space.pressure, all_eigenvalues)
     , p_(space.pressure->full_size())
@@ -53,27 +52,8 @@ namespace tanktread
   void
   StokesPreconditioner::set_shift(const double shift)
   {
-    if (shift != 0. && pressure_multigrid_ == nullptr)
-      throw std::logic_error("StokesPreconditioner::set_shift: made without a multigrid for the pressure.");
     shift_ = shift;
     multigrid_.set_shift(shift);
-  }
-
-
-  void
-  StokesPreconditioner::add_inertial_pressure() const
-  {
-    const std::size_t n = space_.pressure->n_owned();
-    float *const      b = pressure_multigrid_->right_hand_side();
-    for (std::size_t i = 0; i < n; ++i)
-      {
-        b[4 * i]     = r_p_[i];
-        b[4 * i + 1] = b[4 * i + 2] = b[4 * i + 3] = 0.f;
-      }
-    pressure_multigrid_->v_cycle();
-    const float *const solution = pressure_multigrid_->solution();
-    for (std::size_t i = 0; i < n; ++i)
-      p_[i] += float(shift_) * solution[4 * i];
   }
 
 
@@ -85,8 +65,7 @@ namespace tanktread
     for (float &r : r_p_)
       r = -r;
     pressure_mass_inverse_.vmult(p_, r_p_);
-    if (shift_ != 0.)
-      add_inertial_pressure();
+    projection_.add(src.block(velocity_block), shift_, r_p_.data(), p_.data());
     p.store(p_.data(), dst.block(pressure_block), false);
 
     p.update(p_.data());

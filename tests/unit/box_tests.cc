@@ -145,7 +145,7 @@ TEST(StokesInBricks, ARankWithoutCells)
       PointInterpolation interpolation(together.fluid.space());
       interpolation.reinit(points);
       EXPECT_EQ(dealii::Utilities::MPI::sum(interpolation.local_points().size(), MPI_COMM_WORLD), 1u);
-      Fluid fluid(MPI_COMM_WORLD, c.box, cells(c.coarsest, c.finest), true);
+      Fluid fluid(MPI_COMM_WORLD, c.box, cells(c.coarsest, c.finest));
       fluid.adapt(points);
       const unsigned int n_cells = fluid.space().velocity->n_cells();
       fluid.set_viscosity(Viscosity(std::vector<double>(27 * n_cells, 2.), 1., {}));

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 #include <tanktread/base/exceptions.h>
+#include <tanktread/simulation/scene_description.h>
 #include <tanktread/simulation/simulation.h>
 
 #include <unistd.h>
@@ -224,4 +225,22 @@ TEST(Simulation, ARunThatFailsSaysSo)
     return;
   EXPECT_EQ(failed.summary.rfind("quantity,value\noutcome,failed\n", 0), 0u) << failed.summary;
   EXPECT_TRUE(has(failed.log, "FAILED at time 0.000000: ")) << failed.log;
+}
+
+
+TEST(Simulation, TheFluidHasTheBoxOfTheParameters)
+{
+  const Folder     folder;
+  const Parameters parameters = read_parameters((folder.path / "x.prm").string(),
+                                                {"Output/Directory=" + (folder.path / "output").string(),
+                                                 "Scene/Flow=planar extension",
+                                                 "Scene/Box side=20, 10, 5",
+                                                 "Scene/Box faces=prescribed, periodic, prescribed",
+                                                 "Shell mesh/Level=1",
+                                                 "Fluid mesh/Coarsest cell=1.25",
+                                                 "Fluid mesh/Finest cell=0.625"});
+  const Scene      scene(scene_description(parameters), MPI_COMM_WORLD);
+  const Box       &box = scene.fluid().mesh().box();
+  EXPECT_EQ(box.side, (std::array<double, 3>{{20., 10., 5.}}));
+  EXPECT_EQ(box.faces, (std::array<Faces, 3>{{Faces::prescribed, Faces::periodic, Faces::prescribed}}));
 }

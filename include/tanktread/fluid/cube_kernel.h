@@ -66,6 +66,11 @@ namespace tanktread
   void
   add_pressure_gradient(InstructionSet set, const Cubes &cubes, const Number *p, Number *y_u);
 
+  /** y_p += B u. */
+  template <typename Number>
+  void
+  add_divergence(InstructionSet set, const Cubes &cubes, const Number *u, Number *y_p);
+
   /** y_p += mass matrix of the pressures times p. */
   template <typename Number>
   void

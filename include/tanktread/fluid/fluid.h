@@ -14,13 +14,10 @@ namespace tanktread
   class Fluid
   {
   public:
-    /** @param inertia whether set_shift() is going to be called: prepares for it, at some cost. */
-    Fluid(MPI_Comm communicator, const Box &box, const FluidMeshParameters &parameters, bool inertia = false)
+    Fluid(MPI_Comm communicator, const Box &box, const FluidMeshParameters &parameters)
       : mesh_(communicator, box, parameters)
-    {
-      if (inertia)
-        pressure_multigrid_ = std::make_unique<Multigrid<float>>(linear_elements());
-    }
+      , pressure_multigrid_(linear_elements())
+    {}
 
     /** Refines around `points`; see FluidMesh::aim_at(). Returns true if the mesh changed: all vectors of before are void then. Collective. */
     bool
@@ -33,12 +30,11 @@ namespace tanktread
       preconditioner_.reset();
       stokes_.reset();
       space_.reset();
-      if (pressure_multigrid_)
-        climb(*pressure_multigrid_);
+      climb(pressure_multigrid_);
       climb(multigrid_);
       space_          = std::make_unique<TaylorHoodSpace>(mesh_, multigrid_.space());
       stokes_         = std::make_unique<StokesOperator>(*space_);
-      preconditioner_ = std::make_unique<StokesPreconditioner>(*space_, multigrid_, pressure_multigrid_.get());
+      preconditioner_ = std::make_unique<StokesPreconditioner>(*space_, multigrid_, pressure_multigrid_);
       return true;
     }
 
@@ -112,7 +108,7 @@ namespace tanktread
 
     FluidMesh                             mesh_;
     Multigrid<float>                      multigrid_;
-    std::unique_ptr<Multigrid<float>>     pressure_multigrid_; // with inertia
+    Multigrid<float>                      pressure_multigrid_;
     std::unique_ptr<TaylorHoodSpace>      space_;
     std::unique_ptr<StokesOperator>       stokes_;
     std::unique_ptr<StokesPreconditioner> preconditioner_;

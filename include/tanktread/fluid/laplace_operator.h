@@ -9,6 +9,10 @@
 
 namespace tanktread
 {
+  /** Diagonal of the mass matrix of the velocities' functions, hanging nodes included exactly: one number an owned node. Collective. */
+  std::vector<double>
+  mass_diagonal(const NodeSpace &space);
+
   /**
    * (mu grad u, grad v) + shift (u, v) for each velocity component on the free nodes, on full arrays (see NodeSpace); mu is 1 or one number a cell, shift = 0
    * at first. `space` is kept by

@@ -7,13 +7,15 @@
 #include <tanktread/base/timings.h>
 #include <tanktread/fluid/multigrid.h>
 #include <tanktread/fluid/pressure_mass.h>
+#include <tanktread/fluid/pressure_projection.h>
 #include <tanktread/fluid/stokes_operator.h>
 
 namespace tanktread
 {
   /**
-   * Upper block-triangular: pressure first, z_p = -mu M_p^{-1} r_p (the mass matrix is spectrally equivalent to the Schur complement B A^{-1} B^T / mu), then
-   * one multigrid V-cycle for the velocities of r_u + B^T z_p. All in single precision, which costs no iteration.
+   * The factors of a block elimination, each about: first the pressure z_p = -S^{-1} (r_p + B A^{-1} r_u), S = B A^{-1} B^T, with mu M_p^{-1} in place of S^{-1}
+   * for r_p (the mass matrix is spectrally equivalent to mu S) and PressureProjection for what is left of it, then one multigrid V-cycle for the velocities of
+   * r_u + B^T z_p. All in single precision, which costs no iteration.
    *
    * Where inertia puts s times the mass matrix to A, the Schur complement's inverse is about mu M_p^{-1} + s L_p^{-1} (Cahouet and Chabard), L_p the pressures'
    * Laplace matrix, and one V-cycle stands for L_p^{-1}.
@@ -24,15 +26,11 @@ namespace tanktread
     StokesPreconditioner(const StokesPreconditioner &) = delete; // its parts know each other's places
 
     /**
-     * Keeps both by reference, and the pointer; the multigrids have climbed to the mesh of `space`. Collective. @param pressure_multigrid of linear elements,
-     * needed with inertia only.
+     * Keeps all by reference; the multigrids, that of the pressure of linear elements, have climbed to the mesh of `space`. Collective.
      */
-    StokesPreconditioner(const TaylorHoodSpace &space, Multigrid<float> &multigrid, Multigrid<float> *pressure_multigrid = nullptr);
+    StokesPreconditioner(const TaylorHoodSpace &space, Multigrid<float> &multigrid, Multigrid<float> &pressure_multigrid);
 
-    /**
-     * From now on for A + shift times the velocities' mass matrix. Throws std::logic_error if there is no multigrid for the pressure that a shift needs.
-     * Collective.
-     */
+    /** From now on for A + shift times the velocities' mass matrix. Collective. */
     void
     set_shift(double shift);
 
@@ -51,21 +49,18 @@ namespace tanktread
     }
 
   private:
-    /** z_p = -M_p^{-1} r_p, the pressures of `dst`, and B^T z_p in load_. */
+    /** z_p, the pressures of `dst`, and B^T z_p in load_. */
     void
     solve_pressure(FluidBlockVector &dst, const FluidBlockVector &src) const;
     /** Diagonal of the pressure mass and its largest eigenvalue. */
     void
     prepare_pressure_mass();
-    /** p_ += shift L_p^{-1} r_p_ */
-    void
-    add_inertial_pressure() const;
 
     const TaylorHoodSpace                    &space_;
     Multigrid<float>                         &multigrid_;
-    Multigrid<float> *const                   pressure_multigrid_;
     double                                    shift_ = 0.;
     const InstructionSet                      instructions_;
+    PressureProjection                        projection_;
     PressureMass                              pressure_mass_;
     ChebyshevSmoother<PressureMass, float, 1> pressure_mass_inverse_;
     mutable dealii::AlignedVector<float>      p_, r_p_, load_; // full arrays
