@@ -40,17 +40,20 @@ namespace
           points.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
         }
       mesh.aim_at(points);
-      mesh.restart();
-      multigrid.start(mesh);
-      while (!mesh.on_last_rung())
-        multigrid.climb(mesh);
+      for (Multigrid<float> *const climbing : {&pressure_multigrid, &multigrid})
+        {
+          mesh.restart();
+          climbing->start(mesh);
+          while (!mesh.on_last_rung())
+            climbing->climb(mesh);
+        }
       space          = std::make_unique<TaylorHoodSpace>(mesh, multigrid.space());
       stokes         = std::make_unique<StokesOperator>(*space);
-      preconditioner = std::make_unique<StokesPreconditioner>(*space, multigrid);
+      preconditioner = std::make_unique<StokesPreconditioner>(*space, multigrid, pressure_multigrid);
     }
 
     FluidMesh                             mesh;
-    Multigrid<float>                      multigrid;
+    Multigrid<float>                      multigrid, pressure_multigrid{{{}, 1}};
     std::unique_ptr<TaylorHoodSpace>      space;
     std::unique_ptr<StokesOperator>       stokes;
     std::unique_ptr<StokesPreconditioner> preconditioner;
@@ -143,6 +146,7 @@ namespace
        35,
        n_u + n_p},
       {"pressure gradient", [=](Set s) { add_pressure_gradient<Number>(s, c, in_p, y_u); }, O::gradient + O::add, p + 2 * u, 35, n_u + n_p},
+      {"divergence", [=](Set s) { add_divergence<Number>(s, c, in_u, y_p); }, O::divergence, u + 2 * p, 35, n_u + n_p},
       {"pressure mass", [=](Set) { add_pressure_mass<Number>(c, in_p, y_p); }, O::mass, 3 * p, 8, n_p, true},
       {"strain form", [=](Set s) { add_viscous<Number>(s, c, mu, in_u, y_u); }, O::strain_form + O::add, 3 * u + 27. * c.n, 27, n_u},
       {"inertia, shear", [=](Set s) { add_inertia<Number>(s, c, at, shear, inertia, in_u, y_u); }, O::inertia + O::add, 3 * u + 3. * c.n, 27, n_u},
@@ -213,6 +217,7 @@ namespace
     row("LaplaceOperator<float>::apply", n_u, [&] { laplace.apply(arrays.u.data(), arrays.y_u.data()); });
     row("StokesOperator::vmult", n, [&] { scene.stokes->vmult(y, x); });
     row("Multigrid<float>::v_cycle", n_u, [&] { scene.multigrid.v_cycle(); });
+    row("the same of the pressures", space.pressure->partitioner()->size(), [&] { scene.pressure_multigrid.v_cycle(); });
     row("StokesPreconditioner::vmult", n, [&] { scene.preconditioner->vmult(y, x); });
   }
 

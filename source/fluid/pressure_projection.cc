@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: the pressure that belongs to loads on the velocities.
 
+#include <deal.II/base/mpi.h>
+
 #include <tanktread/fluid/pressure_projection.h>
 #include <tanktread/fluid/stokes_operator.h>
 
@@ -19,6 +21,13 @@ namespace tanktread
     constexpr double row_sum = 125. / 64., middle = 1.236;
     for (const double mass : mass_diagonal(*space.velocity))
       inverse_mass_.push_back(middle / (row_sum * mass));
+
+    std::fill(divergence_.begin(), divergence_.end(), 0.f);
+    const std::vector<float> ones(divergence_.size(), 1.f);
+    add_pressure_mass(cubes(space), ones.data(), divergence_.data());
+    space.pressure->collect(divergence_.data());
+    for (std::size_t i = 0; i < space.pressure->n_owned(); ++i)
+      integrals_.push_back(divergence_[i] / space.mesh.box().volume());
   }
 
 
@@ -42,7 +51,12 @@ namespace tanktread
         b[4 * i + 1] = b[4 * i + 2] = b[4 * i + 3] = 0.f;
       }
     multigrid_.v_cycle();
+    const float *const solution = multigrid_.solution();
+    float              mean     = 0.f;
     for (std::size_t i = 0; i < pressures.n_owned(); ++i)
-      p[i] += multigrid_.solution()[4 * i];
+      mean += integrals_[i] * solution[4 * i];
+    mean = dealii::Utilities::MPI::sum(mean, space_.mesh.communicator());
+    for (std::size_t i = 0; i < pressures.n_owned(); ++i)
+      p[i] += solution[4 * i] - mean;
   }
 } // namespace tanktread

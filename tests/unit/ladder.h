@@ -131,9 +131,14 @@ namespace tanktread
   inline unsigned int
   stokes_iterations(Ladder &ladder)
   {
+    Multigrid<float> pressures({{}, 1});
+    ladder.mesh.restart();
+    pressures.start(ladder.mesh);
+    while (!ladder.mesh.on_last_rung())
+      pressures.climb(ladder.mesh); // to the same mesh
     const TaylorHoodSpace      space(ladder.mesh, ladder.multigrid.space());
     const StokesOperator       stokes(space);
-    const StokesPreconditioner preconditioner(space, ladder.multigrid);
+    const StokesPreconditioner preconditioner(space, ladder.multigrid, pressures);
     FluidBlockVector           x, rhs;
     space.reinit(x);
     space.reinit(rhs);

@@ -122,7 +122,7 @@ namespace
   public:
     DrivenLiquid(const Manufactured &exact, const double coarsest_cell, const double finest_cell)
       : exact_(exact)
-      , fluid_(MPI_COMM_WORLD, 4., mesh_parameters(coarsest_cell, finest_cell), true)
+      , fluid_(MPI_COMM_WORLD, 4., mesh_parameters(coarsest_cell, finest_cell))
     {
       fluid_.adapt({Point(0.3, 0.2, 0.3), Point(-0.3, -0.4, -0.2)});
       inertia_ = std::make_unique<Inertia>(fluid_.space(), exact.reynolds_number, exact.undisturbed.at(0.));

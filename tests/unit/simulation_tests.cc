@@ -239,7 +239,7 @@ TEST(Simulation, TheFluidHasTheBoxOfTheParameters)
                                                  "Shell mesh/Level=1",
                                                  "Fluid mesh/Coarsest cell=1.25",
                                                  "Fluid mesh/Finest cell=0.625"});
-  const Scene      scene(scene_description(parameters), MPI_COMM_WORLD);
+  Scene            scene(scene_description(parameters), MPI_COMM_WORLD);
   const Box       &box = scene.fluid().mesh().box();
   EXPECT_EQ(box.side, (std::array<double, 3>{{20., 10., 5.}}));
   EXPECT_EQ(box.faces, (std::array<Faces, 3>{{Faces::prescribed, Faces::periodic, Faces::prescribed}}));

@@ -19,8 +19,8 @@ namespace tanktread
    *
    * which is -S^{-1} B A^{-1} r_u, S = B A^{-1} B^T, as far as divergence and Laplacian commute (Elman, Silvester and Wathen, Finite Elements and Fast Iterative
    * Solvers, section 9.2), for any viscosity. D is diagonal, the sums of rows of the velocities' mass matrix (on cubes 125/64 of its diagonal) over 1.236: B D^{-1} B^T lies
-   * between 0.82 and 1.18 times the pressures' Laplace matrix L_p on a mesh of equal cells, by its symbol. One V-cycle stands for L_p^{-1}. Everything in single precision, on
-   * full arrays (see NodeSpace).
+   * between 0.82 and 1.18 times the pressures' Laplace matrix L_p on a mesh of equal cells, by its symbol. One V-cycle stands for L_p^{-1}; of its result, known up to a
+   * constant, the mean is taken away. Everything in single precision, on full arrays (see NodeSpace).
    */
   class PressureProjection
   {
@@ -36,7 +36,8 @@ namespace tanktread
     const TaylorHoodSpace               &space_;
     Multigrid<float>                    &multigrid_;
     const InstructionSet                 instructions_;
-    std::vector<float>                   inverse_mass_;     // D^{-1}, one number an owned node
+    std::vector<float>                   inverse_mass_;      // D^{-1}, one number an owned node
+    std::vector<float>                   integrals_;         // of the pressures' functions over the volume of the box, one an owned node
     mutable dealii::AlignedVector<float> load_, divergence_; // full arrays
   };
 } // namespace tanktread
