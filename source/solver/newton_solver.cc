@@ -173,34 +173,54 @@ namespace tanktread
   }
 
 
-  double
-  NewtonSolver::line_search(State &state, Residual &r, const State &increment, const TimeStep &step)
+  bool
+  NewtonSolver::accept_if_better(State &state, Residual &r, const State &increment, const TimeStep &step, const double length, const Points points)
   {
-    const double before = norm(r, step.tau);
+    try
+      {
+        const double before = norm(r, step.tau);
+        State        trial  = state;
+        add(trial, length, increment);
+        Residual     r_trial = level_.residual(trial, step, points);
+        const double after   = norm(r_trial, step.tau);
+        if (after > (1. - 1e-4 * length) * before && !is_solved(r_trial, after))
+          return false;
+        state = std::move(trial);
+        r     = std::move(r_trial);
+        return true;
+      }
+    catch (const NumericalError &)
+      {
+        return false; // the trial shell is degenerate or out of the box: a shorter step
+      }
+  }
+
+
+  double
+  NewtonSolver::line_search(State &state, Residual &r, const State &increment, const TimeStep &step, Progress &progress)
+  {
+    // Points that have to follow afterwards may do so at once: where the residual falls even so, it need not be computed twice.
+    if (trial_points() == Points::stay && !level_.has_viscosities())
+      {
+        State trial = state;
+        add(trial, 1., increment);
+        if (level_.coupling().distance(level_.shells(trial)) > distance_allowed(progress))
+          {
+            ++progress.n_moves;
+            if (accept_if_better(state, r, increment, step, 1., Points::follow))
+              return 1.;
+            level_.move_points(state);
+          }
+      }
     for (double length = 1.; length > 0.05; length *= 0.5)
-      try
-        {
-          State trial = state;
-          add(trial, length, increment);
-          Residual     r_trial = level_.residual(trial, step, trial_points());
-          const double after   = norm(r_trial, step.tau);
-          if (after <= (1. - 1e-4 * length) * before || is_solved(r_trial, after))
-            {
-              state = std::move(trial);
-              r     = std::move(r_trial);
-              return length;
-            }
-        }
-      catch (const NumericalError &)
-        {
-          // The trial shell is degenerate or out of the box: a shorter step.
-        }
+      if (accept_if_better(state, r, increment, step, length, trial_points()))
+        return length;
     return 0.;
   }
 
 
   std::string
-  NewtonSolver::iterate(State &state, Residual &r, const TimeStep &step, const Progress &progress, NewtonReport &report)
+  NewtonSolver::iterate(State &state, Residual &r, const TimeStep &step, Progress &progress, NewtonReport &report)
   {
     const bool             near     = progress.length < 0.25 * level_.finest_cell();
     const bool             complete = near && !progress.cautious && level_.coupling().knows_motion();
@@ -221,7 +241,7 @@ namespace tanktread
     report.linear_iterations += linear.iterations;
     if (!linear.converged)
       return "the linear solver did not converge in " + std::to_string(linear.iterations) + " iterations";
-    report.step_lengths.push_back(line_search(state, r, increment, step));
+    report.step_lengths.push_back(line_search(state, r, increment, step, progress));
     report.residuals.push_back(norm(r, step.tau));
     return report.step_lengths.back() == 0. ? "Newton's direction does not reduce the residual" : "";
   }
@@ -234,16 +254,24 @@ namespace tanktread
   }
 
 
-  bool
-  NewtonSolver::follow_shells(State &state, Progress &progress)
+  double
+  NewtonSolver::distance_allowed(const Progress &progress) const
   {
     // Positions within a small part of a cell, which shrinks with the solver's tolerance, are as good as any. A node of the fluid that changes sides makes the
     // residual jump, and now and
     // then shell and node would chase each other for ever: then a larger part has to do.
     constexpr unsigned int patience = 8;
-    const double h = level_.finest_cell(), tolerance = progress.n_moves < patience ? std::min(0.002 * h, 100. * parameters_.newton_tolerance) : 0.02 * h;
-    const bool   moves = trial_points() == Points::stay && level_.coupling().distance(level_.shells(state)) > tolerance;
-    const bool   mixes = level_.viscosity_distance(state) > tolerance;
+    const double h = level_.finest_cell();
+    return progress.n_moves < patience ? std::min(0.002 * h, 100. * parameters_.newton_tolerance) : 0.02 * h;
+  }
+
+
+  bool
+  NewtonSolver::follow_shells(State &state, Progress &progress)
+  {
+    const double tolerance = distance_allowed(progress);
+    const bool   moves     = trial_points() == Points::stay && level_.coupling().distance(level_.shells(state)) > tolerance;
+    const bool   mixes     = level_.viscosity_distance(state) > tolerance;
     if (moves)
       level_.move_points(state);
     if (mixes)

@@ -102,7 +102,7 @@ namespace tanktread
     iterate_to_solution(State &trial, const TimeStep &step, NewtonReport &report);
     /** An iteration from `state` and its residual `r`. Returns why it failed, or nothing. */
     std::string
-    iterate(State &state, Residual &r, const TimeStep &step, const Progress &progress, NewtonReport &report);
+    iterate(State &state, Residual &r, const TimeStep &step, Progress &progress, NewtonReport &report);
     /** After a failure: a new implicit operator or another tangent for the next try. Throws NumericalError when there is none left. */
     void
     react(const std::string &failure, bool renewed, Progress &progress);
@@ -140,7 +140,13 @@ namespace tanktread
      * Moves `state` along `increment` with the longest step length of 1, 1/2, ... that reduces the norm of the residual; returns 0 if there is none.
      */
     double
-    line_search(State &state, Residual &r, const State &increment, const TimeStep &step);
+    line_search(State &state, Residual &r, const State &increment, const TimeStep &step, Progress &progress);
+    /** Moves `state` by `length` times `increment` if that reduces the norm of the residual, and `r` with it. */
+    bool
+    accept_if_better(State &state, Residual &r, const State &increment, const TimeStep &step, double length, Points points);
+    /** How far shells may be from the points that stand for them, and from where the viscosity has them, in a solution. */
+    double
+    distance_allowed(const Progress &progress) const;
     /** solve_flow() with the viscous part of the jumps as it is. Returns the linear iterations. */
     unsigned int
     solve_with_fixed_jumps(State &state, Points points);
