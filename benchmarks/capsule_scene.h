@@ -4,7 +4,7 @@
 #ifndef tanktread_benchmarks_capsule_scene_h
 #define tanktread_benchmarks_capsule_scene_h
 
-#include <tanktread/base/exceptions.h>
+#include <tanktread/simulation/time_stepper.h>
 #include <tanktread/solver/scene.h>
 #include <tanktread/surface/capsule_shape.h>
 
@@ -56,69 +56,67 @@ namespace tanktread
   }
 
 
-  /** Backward Euler from the sphere at rest, with guesses and new meshes as TimeStepper and Simulation have them. */
+  /** Steps of the program from rest, BDF2, with its guesses and its meshes. */
   class Stepping
   {
   public:
     Stepping(Scene &scene, const double dt)
       : scene_(scene)
-      , dt_(dt)
-      , x_(scene.capsule().initial())
+      , memory_(parameters(dt))
+      , log_(false)
+      , stepper_(parameters(dt), TimeCoupling::implicit_newton, 1e3, scene, memory_, log_)
+      , state_(scene.initial_state())
     {
-      start_flow();
+      scene.refine_around(state_);
+      scene.fluid().space().reinit(state_.fluid);
+      scene.solver().solve_flow(state_);
+      stepper_.start(0., positions(state_));
     }
 
-    /** Whether the step to come can be extrapolated to. */
-    bool
-    has_previous() const
+    double
+    time() const
     {
-      return !previous_.capsules.empty();
+      return time_;
+    }
+    const State &
+    state() const
+    {
+      return state_;
     }
 
-    /** New mesh if the shell has left the fine cells; but at least every other step is extrapolated. */
-    void
-    refine_if_necessary()
-    {
-      if (has_previous() && !scene_.covers(state_))
-        start_flow();
-    }
-
-    const ControlPoints &
-    x() const
-    {
-      return x_;
-    }
-
-    NewtonReport
+    /** With what a change of mesh before it, if there is one, and attempts on others take. */
+    StepResult
     step()
     {
-      State guess = state_;
-      if (has_previous())
+      if (!scene_.covers(state_))
+        stepper_.refine_around(state_);
+      StepResult result = stepper_.step(state_, time_, false);
+      if (!result.beyond_mesh.empty())
         {
-          scene_.level().carry_pressure(previous_);
-          guess = combination({2., -1.}, {&state_, &previous_});
+          stepper_.refine_around(state_, {result.beyond_mesh});
+          const StepResult first = std::exchange(result, stepper_.step(state_, time_, true));
+          result.newton_iterations += first.newton_iterations;
+          result.linear_iterations += first.linear_iterations;
         }
-      const NewtonReport report = scene_.solver().solve(guess, {{x_}, dt_});
-      if (!report.converged)
-        throw NumericalError("A time step failed: " + report.message);
-      previous_ = std::exchange(state_, guess);
-      x_        = state_.capsules[0].x;
-      return report;
+      time_ += result.length;
+      return result;
     }
 
   private:
-    void
-    start_flow()
+    static TimeParameters
+    parameters(const double dt)
     {
-      state_ = refine_around(scene_, x_);
-      scene_.solver().solve_flow(state_);
-      previous_ = State();
+      TimeParameters result;
+      result.step = dt;
+      return result;
     }
 
-    Scene        &scene_;
-    const double  dt_;
-    ControlPoints x_;
-    State         state_, previous_;
+    Scene      &scene_;
+    StepMemory  memory_;
+    Log         log_;
+    TimeStepper stepper_;
+    State       state_;
+    double      time_ = 0.;
   };
 } // namespace tanktread
 

@@ -56,7 +56,7 @@ namespace tanktread
   {
     std::string mesh;
     double      n_cells = 0.;
-    Entries     problem, algebraic, solves_at_sphere, solves, steps, enriched_steps;
+    Entries     problem, algebraic, solves_at_sphere, solves, plain_steps, steps, viscous_steps, pair_steps;
   };
 
 
@@ -95,7 +95,7 @@ namespace tanktread
         head += " " + all[m - 1].mesh + " to " + all[m].mesh + " |";
         rule += "---:|";
       }
-    for (const auto part : {&Measurement::problem, &Measurement::algebraic, &Measurement::solves_at_sphere, &Measurement::solves, &Measurement::steps})
+    for (const auto part : {&Measurement::problem, &Measurement::algebraic, &Measurement::solves_at_sphere, &Measurement::solves, &Measurement::plain_steps, &Measurement::steps, &Measurement::viscous_steps, &Measurement::pair_steps})
       for (std::size_t i = 0; i < (all[0].*part).size(); ++i)
         {
           if ((all[0].*part)[i].cost == 0.)

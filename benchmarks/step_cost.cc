@@ -19,6 +19,7 @@
 #include <cstdlib>
 #include <iostream>
 #include <memory>
+#include <numeric>
 #include <sstream>
 
 using namespace tanktread;
@@ -45,32 +46,63 @@ namespace
   }
 
 
-  /** Mesh, multigrid and the Stokes equations with the forces of the deformed shell. Collective, like all that follows. */
+  /** All shells deformed, at their places. */
+  State
+  deformed_state(const Scene &scene)
+  {
+    State result = scene.initial_state();
+    for (CapsuleState &capsule : result.capsules)
+      capsule.x += deformed(scene.capsule()) - scene.capsule().initial();
+    return result;
+  }
+
+
+  /** What is to be compared with a step: the Stokes equations from zero with one viscosity and the forces of the deformed shells, on the scene's mesh. Collective, like all that follows. */
+  struct StokesSolve
+  {
+    LinearReport report;
+    double       time = 0.;
+  };
+  StokesSolve
+  measure_stokes_solve(Scene &scene, FluidBlockVector &load)
+  {
+    const Fluid &fluid = scene.fluid();
+    const State  state = deformed_state(scene);
+    scene.coupling().move(scene.level().shells(state));
+    ShellFields forces;
+    for (const CapsuleState &capsule : state.capsules)
+      forces.push_back(scene.capsule().shell().force(capsule.x));
+    fluid.space().reinit(load);
+    scene.coupling().spread(forces, load);
+    StokesSolve      result;
+    FluidBlockVector flow;
+    result.time = median_time(5, [&] {
+      fluid.space().reinit(flow);
+      result.report = solve_fgmres(fluid.stokes(), fluid.preconditioner(), flow, load, relative_tolerance, max_iterations);
+    });
+    return result;
+  }
+
+
+  /** Mesh and multigrid, and the Stokes equations. */
   void
   measure_stokes(Scene &scene, const bool ml, Measurement &result)
   {
-    const Capsule &capsule = scene.capsule();
-    State          state;
-    const double   set_up = median_time(1, [&] { state = refine_around(scene, deformed(capsule)); });
-    const Fluid   &fluid  = scene.fluid();
-    const auto    &space  = fluid.space();
-    result.n_cells        = fluid.mesh().triangulation().n_global_active_cells();
+    const Capsule   &capsule = scene.capsule();
+    State            state;
+    FluidBlockVector load;
+    const double     set_up = median_time(1, [&] { state = refine_around(scene, deformed(capsule)); });
+    const auto      &space  = scene.fluid().space();
+    result.n_cells          = scene.fluid().mesh().triangulation().n_global_active_cells();
 
-    FluidBlockVector load, flow;
-    space.reinit(load);
-    scene.coupling().spread({capsule.shell().force(state.capsules[0].x)}, load);
-    LinearReport report;
-    const double time = median_time(5, [&] {
-      space.reinit(flow);
-      report = solve_fgmres(fluid.stokes(), fluid.preconditioner(), flow, load, relative_tolerance, max_iterations);
-    });
-    result.problem    = {count("cells", result.n_cells),
-                         count("velocity unknowns", space.velocity->partitioner()->size()),
-                         count("pressure unknowns", space.pressure->partitioner()->size()),
-                         count("control points", capsule.n_control_points()),
-                         count("coupling points", capsule.coupling_surface().n_points()),
-                         seconds("mesh and multigrid", set_up),
-                         solve("Stokes solve, iterations and s", report, time)};
+    const StokesSolve stokes = measure_stokes_solve(scene, load);
+    result.problem           = {count("cells", result.n_cells),
+                                count("velocity unknowns", space.velocity->partitioner()->size()),
+                                count("pressure unknowns", space.pressure->partitioner()->size()),
+                                count("control points", capsule.n_control_points()),
+                                count("coupling points", capsule.coupling_surface().n_points()),
+                                seconds("mesh and multigrid", set_up),
+                                solve("Stokes solve, iterations and s", stokes.report, stokes.time)};
     if (ml)
       result.algebraic = compare_with_algebraic(scene, state, load, relative_tolerance);
   }
@@ -183,35 +215,63 @@ namespace
   }
 
 
-  void
-  measure_steps(Scene &scene, const double dt, Entries &result)
+  double
+  median(std::vector<double> values)
   {
-    constexpr unsigned int n_warm_up = 3, n_measured = 5;
-    Stepping               stepping(scene, dt);
-    Timings                timings; // of the measured steps
-    std::vector<double>    times;
-    double                 newton = 0., linear = 0., total = 0.;
-    for (unsigned int n = 0; times.size() < n_measured; ++n)
+    std::sort(values.begin(), values.end());
+    return values[values.size() / 2];
+  }
+
+
+  /** Steps of the program from rest; what is measured are those between the times 0.5 and 3. */
+  Entries
+  measure_steps(SceneDescription description, const double dt, const std::string &name)
+  {
+    forget_peak_memory();
+    Scene scene(std::move(description), MPI_COMM_WORLD);
+    scene.refine_around(deformed_state(scene));
+    FluidBlockVector    load;
+    const StokesSolve   stokes = measure_stokes_solve(scene, load);
+    Stepping            stepping(scene, dt);
+    std::vector<double> times, newton, linear;
+    while (stepping.time() < 3. - 1e-9)
       {
-        stepping.refine_if_necessary();
-        const bool is_measured = n >= n_warm_up && stepping.has_previous();
-        scene.timings()        = timings;
-        NewtonReport report;
-        const double time = median_time(1, [&] { report = stepping.step(); });
+        if (times.empty())
+          scene.timings() = Timings();
+        StepResult   result;
+        const bool   is_measured = stepping.time() > 0.5 - 1e-9;
+        const double time        = median_time(1, [&] { result = stepping.step(); });
         if (!is_measured)
           continue;
-        timings = scene.timings();
         times.push_back(time);
-        total += time;
-        newton += report.newton_iterations;
-        linear += report.linear_iterations;
+        newton.push_back(result.newton_iterations);
+        linear.push_back(result.linear_iterations);
       }
-    std::sort(times.begin(), times.end());
-    result = {{"Newton iterations", formatted("%.1f", newton / n_measured), 0.},
-              {"linear iterations", formatted("%.1f", linear / n_measured), 0.},
-              seconds("step", times[n_measured / 2])};
-    for (const Entry &share : shares(timings, total))
+    const double step   = median(times), memory = peak_memory();
+    Entries      result = {{"Newton iterations", formatted("%.0f", median(newton)), 0.},
+                           {"linear iterations", formatted("%.0f", median(linear)), 0.},
+                           seconds(name + "step", step),
+                           {"over a Stokes solve", formatted("%.1f", step / stokes.time), 0.}};
+    for (const Entry &share : shares(scene.timings(), std::accumulate(times.begin(), times.end(), 0.)))
       result.push_back(share);
+    result.push_back({name + "peak memory, GB", formatted("%.2f", memory), memory});
+    return result;
+  }
+
+
+  SceneDescription
+  with_viscosity_ratio(SceneDescription scene, const double ratio)
+  {
+    scene.liquids.viscosity_ratio = ratio;
+    return scene;
+  }
+
+
+  SceneDescription
+  pair(SceneDescription scene)
+  {
+    scene.centres = {Eigen::RowVector3d(-2.5, 0., 0.), Eigen::RowVector3d(2.5, 0., 0.)};
+    return scene;
   }
 
 
@@ -239,13 +299,15 @@ namespace
     refine_around(scene, capsule.initial());
     result.solves_at_sphere = measure_implicit_solves(scene, "sphere", capsule.initial(), Tangent::exact, dt);
     progress(result.solves_at_sphere);
-    measure_steps(scene, dt, result.steps);
-    const double memory = peak_memory();
-    result.steps.push_back({"peak memory, GB", formatted("%.2f", memory), memory});
-    progress(result.steps);
-    Scene enriched(sheared_sphere(cells, Interface::enriched), MPI_COMM_WORLD);
-    measure_steps(enriched, dt, result.enriched_steps);
-    progress(result.enriched_steps);
+    const SceneDescription enriched = sheared_sphere(cells, Interface::enriched);
+    const auto             steps    = [&](const SceneDescription &description, const std::string &name, Entries &entries) {
+      entries = measure_steps(description, dt, name);
+      progress(entries);
+    };
+    steps(sheared_sphere(cells), "plain ", result.plain_steps);
+    steps(enriched, "", result.steps);
+    steps(with_viscosity_ratio(enriched, 5.), "viscous ", result.viscous_steps);
+    steps(pair(enriched), "pair's ", result.pair_steps);
     return result;
   }
 
@@ -317,8 +379,12 @@ namespace
              "The same at the deformed shell, compressed in two directions, with the positive tangent, to which Newton's method resorts where the exact one is indefinite:",
              all,
              &Measurement::solves)
-        << table("Steps of backward Euler, dt = " + dt + ", and the shares of their time; the first five within the linear solver:", all, &Measurement::steps)
-        << table("The same with the enriched interface:", all, &Measurement::enriched_steps);
+        << table("Steps of the program from rest, dt = " + dt +
+                   ", medians between the times 0.5 and 3, and the shares of their time, the first five within the linear solver. Enriched interface:",
+                 all,
+                 &Measurement::steps)
+        << table("Plain interface:", all, &Measurement::plain_steps)
+        << table("Enriched, viscosity ratio 5:", all, &Measurement::viscous_steps) << table("Enriched, two capsules:", all, &Measurement::pair_steps);
     if (all.size() > 1)
       std::cout << table_of_exponents(all);
   }
