@@ -43,6 +43,23 @@ namespace tanktread
   }
 
 
+  inline SceneDescription
+  with_viscosity_ratio(SceneDescription scene, const double ratio)
+  {
+    scene.liquids.viscosity_ratio = ratio;
+    return scene;
+  }
+
+
+  /** Two of its capsules, beside each other in the flow. */
+  inline SceneDescription
+  pair(SceneDescription scene)
+  {
+    scene.centres = {Eigen::RowVector3d(-2.5, 0., 0.), Eigen::RowVector3d(2.5, 0., 0.)};
+    return scene;
+  }
+
+
   /** The capsule with control points x and a new mesh around it, with a zero flow. */
   inline State
   refine_around(Scene &scene, const ControlPoints &x)

@@ -95,7 +95,14 @@ namespace tanktread
         head += " " + all[m - 1].mesh + " to " + all[m].mesh + " |";
         rule += "---:|";
       }
-    for (const auto part : {&Measurement::problem, &Measurement::algebraic, &Measurement::solves_at_sphere, &Measurement::solves, &Measurement::plain_steps, &Measurement::steps, &Measurement::viscous_steps, &Measurement::pair_steps})
+    for (const auto part : {&Measurement::problem,
+                            &Measurement::algebraic,
+                            &Measurement::solves_at_sphere,
+                            &Measurement::solves,
+                            &Measurement::plain_steps,
+                            &Measurement::steps,
+                            &Measurement::viscous_steps,
+                            &Measurement::pair_steps})
       for (std::size_t i = 0; i < (all[0].*part).size(); ++i)
         {
           if ((all[0].*part)[i].cost == 0.)
@@ -110,6 +117,14 @@ namespace tanktread
           rows += "\n";
         }
     return head + "\n" + rule + "\n" + rows;
+  }
+
+
+  inline double
+  median(std::vector<double> values)
+  {
+    std::sort(values.begin(), values.end());
+    return values[values.size() / 2];
   }
 
 

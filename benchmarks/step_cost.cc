@@ -57,7 +57,10 @@ namespace
   }
 
 
-  /** What is to be compared with a step: the Stokes equations from zero with one viscosity and the forces of the deformed shells, on the scene's mesh. Collective, like all that follows. */
+  /**
+   * What is to be compared with a step: the Stokes equations from zero with one viscosity and the forces of the deformed shells, on the scene's mesh. Collective,
+   * like all that follows.
+   */
   struct StokesSolve
   {
     LinearReport report;
@@ -215,14 +218,6 @@ namespace
   }
 
 
-  double
-  median(std::vector<double> values)
-  {
-    std::sort(values.begin(), values.end());
-    return values[values.size() / 2];
-  }
-
-
   /** Steps of the program from rest; what is measured are those between the times 0.5 and 3. */
   Entries
   measure_steps(SceneDescription description, const double dt, const std::string &name)
@@ -247,7 +242,7 @@ namespace
         newton.push_back(result.newton_iterations);
         linear.push_back(result.linear_iterations);
       }
-    const double step   = median(times), memory = peak_memory();
+    const double step = median(times), memory = peak_memory();
     Entries      result = {{"Newton iterations", formatted("%.0f", median(newton)), 0.},
                            {"linear iterations", formatted("%.0f", median(linear)), 0.},
                            seconds(name + "step", step),
@@ -256,22 +251,6 @@ namespace
       result.push_back(share);
     result.push_back({name + "peak memory, GB", formatted("%.2f", memory), memory});
     return result;
-  }
-
-
-  SceneDescription
-  with_viscosity_ratio(SceneDescription scene, const double ratio)
-  {
-    scene.liquids.viscosity_ratio = ratio;
-    return scene;
-  }
-
-
-  SceneDescription
-  pair(SceneDescription scene)
-  {
-    scene.centres = {Eigen::RowVector3d(-2.5, 0., 0.), Eigen::RowVector3d(2.5, 0., 0.)};
-    return scene;
   }
 
 
@@ -383,8 +362,8 @@ namespace
                    ", medians between the times 0.5 and 3, and the shares of their time, the first five within the linear solver. Enriched interface:",
                  all,
                  &Measurement::steps)
-        << table("Plain interface:", all, &Measurement::plain_steps)
-        << table("Enriched, viscosity ratio 5:", all, &Measurement::viscous_steps) << table("Enriched, two capsules:", all, &Measurement::pair_steps);
+        << table("Plain interface:", all, &Measurement::plain_steps) << table("Enriched, viscosity ratio 5:", all, &Measurement::viscous_steps)
+        << table("Enriched, two capsules:", all, &Measurement::pair_steps);
     if (all.size() > 1)
       std::cout << table_of_exponents(all);
   }

@@ -138,18 +138,10 @@ namespace tanktread
       TANKTREAD_INLINE void
       operator()(const double *size, const unsigned int *nodes, const unsigned int *p_nodes, const unsigned int) const
       {
-        using V = Lanes<Number, n_cubes>;
-        V       v[27], q[8];
-        const V area = sizes<Number, n_cubes>(size, 2) * Number(1. / 216);
+        Lanes<Number, n_cubes> v[27];
         for (int a = 0; a < 27; ++a)
           v[a] = gather<Number, n_cubes>(u, nodes + a);
-        contract<Number, n_cubes>(v, q);
-        for (int j = 0; j < 8; ++j)
-          {
-            const V part = area * q[j];
-            for (int cube = 0; cube < n_cubes; ++cube)
-              y[p_nodes[8 * cube + j]] += part[4 * cube] + part[4 * cube + 1] + part[4 * cube + 2];
-          }
+        scatter_divergence<Number, n_cubes>(v, sizes<Number, n_cubes>(size, 2) * Number(1. / 216), p_nodes, y);
       }
     };
 
@@ -168,13 +160,7 @@ namespace tanktread
         const V area = sizes<Number, n_cubes>(size, 2) * Number(1. / 216);
         for (int a = 0; a < 27; ++a)
           v[a] = gather<Number, n_cubes>(u, nodes + a);
-        contract<Number, n_cubes>(v, q);
-        for (int j = 0; j < 8; ++j)
-          {
-            const V part = area * q[j];
-            for (int cube = 0; cube < n_cubes; ++cube)
-              y_p[p_nodes[8 * cube + j]] -= part[4 * cube] + part[4 * cube + 1] + part[4 * cube + 2];
-          }
+        scatter_divergence<Number, n_cubes>(v, -area, p_nodes, y_p);
         gather_pressures<Number, n_cubes>(p, p_nodes, area, q);
         expand<Number, n_cubes>(q, w);
         multiply_by_laplace<Number>(v, sizes<Number, n_cubes>(size, 1));

@@ -108,13 +108,7 @@ namespace tanktread
         const V area = sizes<Number, n_cubes>(size, 2) * Number(1. / 216);
         for (int a = 0; a < 27; ++a)
           v[a] = gather<Number, n_cubes>(u, nodes + a);
-        contract<Number, n_cubes>(v, q);
-        for (int j = 0; j < 8; ++j)
-          {
-            const V part = area * q[j];
-            for (int cube = 0; cube < n_cubes; ++cube)
-              y_p[p_nodes[8 * cube + j]] -= part[4 * cube] + part[4 * cube + 1] + part[4 * cube + 2];
-          }
+        scatter_divergence<Number, n_cubes>(v, -area, p_nodes, y_p);
         gather_pressures<Number, n_cubes>(p, p_nodes, area, q);
         expand<Number, n_cubes>(q, w);
         multiply_by_viscous<Number, n_cubes>(v, sizes<Number, n_cubes>(size, 1), viscosity + 27 * std::size_t(first_cube), least);

@@ -40,8 +40,8 @@ namespace tanktread
     if (starts())
       throw std::logic_error("StepHistory: a step of BDF2 looks back to two levels.");
     return each_capsule([&](const std::size_t c) {
-      return is_second_order() ? bdf2_step(levels_[0].x[c], levels_[1].x[c], length, levels_[0].time - levels_[1].time) :
-                                 backward_euler_step(levels_[0].x[c], length);
+      return is_second_order() ? bdf2_step(levels_[0].x[c], levels_[1].x[c], length, levels_[0].time - levels_[1].time)
+                               : backward_euler_step(levels_[0].x[c], length);
     });
   }
 

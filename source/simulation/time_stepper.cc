@@ -132,9 +132,9 @@ namespace tanktread
     ShellFields                displacement;
     for (std::size_t c = 0; c < shells.size(); ++c)
       displacement.push_back(stage.capsules[c].x - state.capsules[c].x - stage.capsules[c].volume_shift * shells[c]->normal_field());
-    next                = extrapolation({{time + stage_length, &stage}, {time, &state}}, time + length);
-    NewtonReport second = solve_level(
-      memory_.history.second_stage(length, displacement), time + length, memory_.history.second_stage_weights(), stage, &state, next);
+    next = extrapolation({{time + stage_length, &stage}, {time, &state}}, time + length);
+    NewtonReport second =
+      solve_level(memory_.history.second_stage(length, displacement), time + length, memory_.history.second_stage_weights(), stage, &state, next);
     second.newton_iterations += first.newton_iterations;
     second.linear_iterations += first.linear_iterations;
     return second;

@@ -94,22 +94,6 @@ namespace tanktread
   }
 
 
-  double
-  NewtonSolver::forcing_term(const double norm) const
-  {
-    // As accurate as the second order of the iteration deserves, but no more than the tolerance asks for.
-    return std::min(parameters_.linear_tolerance, std::max(0.3 * norm, 0.3 * parameters_.newton_tolerance / norm));
-  }
-
-
-  double
-  NewtonSolver::motion_accuracy(const double norm) const
-  {
-    // What is left of the residual after an iteration is to be small against its square, and against the tolerance.
-    return std::min(0.01, 0.01 * std::max(norm, parameters_.newton_tolerance));
-  }
-
-
   unsigned int
   NewtonSolver::max_linear_iterations(const double tau) const
   {
@@ -147,7 +131,8 @@ namespace tanktread
 
 
   void
-  NewtonSolver::set_increment(const FluidBlockVector &solution, const Residual &r, const ShellFields &dx0, const LinearisedShells &shells, State &increment) const
+  NewtonSolver::set_increment(const FluidBlockVector &solution, const Residual &r, const ShellFields &dx0, const LinearisedShells &shells, State &increment)
+    const
   {
     level_.fluid().space().reinit(increment.fluid);
     for (unsigned int b = 0; b <= pressure_block; ++b)
@@ -247,13 +232,6 @@ namespace tanktread
   }
 
 
-  NewtonSolver::Points
-  NewtonSolver::trial_points() const
-  {
-    return level_.coupling().knows_motion() ? Points::follow : Points::stay;
-  }
-
-
   double
   NewtonSolver::distance_allowed(const Progress &progress) const
   {
@@ -261,7 +239,7 @@ namespace tanktread
     // residual jump, and now and
     // then shell and node would chase each other for ever: then a larger part has to do.
     constexpr unsigned int patience = 8;
-    const double h = level_.finest_cell();
+    const double           h        = level_.finest_cell();
     return progress.n_moves < patience ? std::min(0.002 * h, 100. * parameters_.newton_tolerance) : 0.02 * h;
   }
 

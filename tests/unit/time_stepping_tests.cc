@@ -72,8 +72,8 @@ TEST(TimeStepping, OrdersOnADecayingMotion)
             const ImplicitStep stage = sdirk2_stage(x, dt);
             step                     = sdirk2_step(x, stage.xhat / (1. + stage.tau) - x, dt);
           }
-        previous                = x;
-        x                       = step.xhat / (1. + step.tau);
+        previous = x;
+        x        = step.xhat / (1. + step.tau);
       }
     return std::abs(x(0, 0) - std::exp(-1.));
   };

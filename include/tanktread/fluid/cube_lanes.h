@@ -187,6 +187,22 @@ namespace tanktread
     }
 
 
+    /** Adds `factor` times the divergence of u, tested with the linear functions, at the cubes' corners. */
+    template <typename Number, int n_cubes>
+    TANKTREAD_INLINE void
+    scatter_divergence(const Lanes<Number, n_cubes> *u, const Lanes<Number, n_cubes> factor, const unsigned int *nodes, Number *y)
+    {
+      Lanes<Number, n_cubes> q[8];
+      contract<Number, n_cubes>(u, q);
+      for (int j = 0; j < 8; ++j)
+        {
+          const Lanes<Number, n_cubes> part = factor * q[j];
+          for (int cube = 0; cube < n_cubes; ++cube)
+            y[nodes[8 * cube + j]] += part[4 * cube] + part[4 * cube + 1] + part[4 * cube + 2];
+        }
+    }
+
+
     /** Pressures of the cubes' corners, each in the lanes of the components, times `factor`. */
     template <typename Number, int n_cubes>
     TANKTREAD_INLINE void

@@ -17,10 +17,10 @@ namespace tanktread
    *
    *     z_p = -L_p^{-1} B D^{-1} r_u,
    *
-   * which is -S^{-1} B A^{-1} r_u, S = B A^{-1} B^T, as far as divergence and Laplacian commute (Elman, Silvester and Wathen, Finite Elements and Fast Iterative
-   * Solvers, section 9.2), for any viscosity. D is diagonal, the sums of rows of the velocities' mass matrix (on cubes 125/64 of its diagonal) over 1.236: B D^{-1} B^T lies
-   * between 0.82 and 1.18 times the pressures' Laplace matrix L_p on a mesh of equal cells, by its symbol. One V-cycle stands for L_p^{-1}; of its result, known up to a
-   * constant, the mean is taken away. Everything in single precision, on full arrays (see NodeSpace).
+   * which is -S^{-1} B A^{-1} r_u, S = B A^{-1} B^T, as far as divergence and Laplacian commute (Elman, Silvester and Wathen, Finite Elements and Fast
+   * Iterative Solvers, section 9.2), for any viscosity. D is diagonal, the sums of rows of the velocities' mass matrix (on cubes 125/64 of its diagonal) over
+   * 1.236: B D^{-1} B^T lies between 0.82 and 1.18 times the pressures' Laplace matrix L_p on a mesh of equal cells, by its symbol. One V-cycle stands for
+   * L_p^{-1}; of its result, known up to a constant, the mean is taken away. Everything in single precision, on full arrays (see NodeSpace).
    */
   class PressureProjection
   {

@@ -21,7 +21,8 @@ namespace tanktread
     double       length            = 0.;
     unsigned int newton_iterations = 0;
     unsigned int linear_iterations = 0;
-    ShellFields  beyond_mesh; // not empty: no step was made, since shells that end here cut cells that are not finest ones; to be tried again on a mesh around them too
+    ShellFields
+      beyond_mesh; // not empty: no step was made, since shells that end here cut cells that are not finest ones; to be tried again on a mesh around them too
   };
 
   /**
@@ -42,8 +43,8 @@ namespace tanktread
     start(double time, const ShellFields &x);
 
     /**
-     * Adapts the fluid's mesh to the shells of `state`, and to `others`, as Scene::refine_around(), and carries over the flows of `state`, which has one, and of
-     * the levels before it: what the guess of the next step is made of and, where there is inertia, what the scheme looks back to.
+     * Adapts the fluid's mesh to the shells of `state`, and to `others`, as Scene::refine_around(), and carries over the flows of `state`, which has one, and
+     * of the levels before it: what the guess of the next step is made of and, where there is inertia, what the scheme looks back to.
      */
     void
     refine_around(State &state, const std::vector<ShellFields> &others = {});
@@ -69,7 +70,7 @@ namespace tanktread
   private:
     StepResult
     implicit_step(State &state, double time, bool mesh_is_new);
-    /** Solves for the level at `time`; `next` is the guess, and then the level. With inertia the velocities `weights` times those of `last` and `before` go into it. */
+    /** Solves for the level at `time`, from the guess `next`. With inertia the velocities of `last` and `before` go into it with these weights. */
     NewtonReport
     solve_level(const ShellSteps &steps, double time, const std::array<double, 2> &weights, const State &last, const State *before, State &next);
     /** The two stages of a step that starts the scheme. A first stage beyond the finest cells is left in `next`. */

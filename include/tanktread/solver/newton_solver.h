@@ -10,6 +10,7 @@
 #include <tanktread/solver/solver_parameters.h>
 #include <tanktread/solver/time_level.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -97,7 +98,10 @@ namespace tanktread
      * derivative.
      */
     Points
-    trial_points() const;
+    trial_points() const
+    {
+      return level_.coupling().knows_motion() ? Points::follow : Points::stay;
+    }
     void
     iterate_to_solution(State &trial, const TimeStep &step, NewtonReport &report);
     /** An iteration from `state` and its residual `r`. Returns why it failed, or nothing. */
@@ -126,10 +130,18 @@ namespace tanktread
     use(Tangent tangent);
     /** Relative residual at which the linear solver may stop when the norm of the nonlinear residual is `norm`. */
     double
-    forcing_term(double norm) const;
+    forcing_term(const double norm) const
+    {
+      // As accurate as the second order of the iteration deserves, but no more than the tolerance asks for.
+      return std::min(parameters_.linear_tolerance, std::max(0.3 * norm, 0.3 * parameters_.newton_tolerance / norm));
+    }
     /** Error that ShellMotion may have in an iteration that starts with the residual `norm`, which may lack the part of the forces. */
     double
-    motion_accuracy(double norm) const;
+    motion_accuracy(const double norm) const
+    {
+      // What is left of the residual after an iteration is to be small against its square, and against the tolerance.
+      return std::min(0.01, 0.01 * std::max(norm, parameters_.newton_tolerance));
+    }
     unsigned int
     max_linear_iterations(double tau) const;
     LinearReport
