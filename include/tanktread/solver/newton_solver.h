@@ -149,7 +149,8 @@ namespace tanktread
     void
     set_increment(const FluidBlockVector &solution, const Residual &r, const ShellFields &dx0, const LinearisedShells &shells, State &increment) const;
     /**
-     * Moves `state` along `increment` with the longest step length of 1, 1/2, ... that reduces the norm of the residual; returns 0 if there is none.
+     * Moves `state` along `increment` with the longest step length of 1, 1/2, ... that reduces the norm of the residual; returns 0 if there is none. A full step
+     * after which the points would have to follow is tried with points that do, then with points that stay.
      */
     double
     line_search(State &state, Residual &r, const State &increment, const TimeStep &step, Progress &progress);
