@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: what solves and time steps cost, mesh by mesh.
 //
-// Usage: mpirun -np N step_cost [--cells 32,64,128] [--dt 0.1] [--ml]. Markdown tables on the standard output, progress on the standard error. A neo-Hookean
+// Usage: mpirun -np N step_cost [--cells 32,64,128] [--dt 0.1] [--ml | --steps]. Markdown tables on the standard output, progress on the standard error. A neo-Hookean
 // sphere with
 // bending (G = 0.2, khat = 0.04) in shear, box 10 a, h = 10 a/cells, shell of level log2(cells/8). With --ml the Stokes solves alone, compared with assembled
 // matrices and
-// algebraic multigrid.
+// algebraic multigrid; with --steps the steps with the enriched interface alone.
 
 #include <deal.II/base/mpi.h>
 
@@ -34,6 +34,7 @@ namespace
     std::vector<unsigned int> cells = {32, 64, 128};
     double                    dt    = 0.1;
     bool                      ml    = false;
+    bool                      steps = false; // and nothing else, with the enriched interface
   };
 
 
@@ -151,7 +152,7 @@ namespace
     const DistributedShell distributed(shell, capsule.topology(), MPI_COMM_WORLD);
     const ShellLayout      layout(1, capsule.n_control_points(), MPI_COMM_WORLD);
     SolverMemory           memory;
-    ImplicitShells         implicit(layout, memory);
+    ImplicitShells         implicit(capsule, layout, memory);
     State                  state                 = scene.initial_state();
     state.capsules[0].x                          = x;
     state.capsules[0].force                      = shell.force(x);
@@ -255,9 +256,10 @@ namespace
 
 
   Measurement
-  measure(const unsigned int cells, const double dt, const bool ml)
+  measure(const unsigned int cells, const Options &options)
   {
-    Measurement result;
+    const double dt = options.dt;
+    Measurement  result;
     result.mesh         = "10a/" + std::to_string(cells);
     const auto progress = [&](const Entries &entries) {
       if (is_first_rank())
@@ -266,11 +268,21 @@ namespace
     forget_peak_memory();
     Scene          scene(sheared_sphere(cells), MPI_COMM_WORLD);
     const Capsule &capsule = scene.capsule();
-    measure_stokes(scene, ml, result);
+    measure_stokes(scene, options.ml, result);
     progress(result.problem);
-    if (ml)
+    if (options.ml)
       {
         progress(result.algebraic);
+        return result;
+      }
+    const SceneDescription enriched = sheared_sphere(cells, Interface::enriched);
+    const auto             steps    = [&](const SceneDescription &description, const std::string &name, Entries &entries) {
+      entries = measure_steps(description, dt, name);
+      progress(entries);
+    };
+    if (options.steps)
+      {
+        steps(enriched, "", result.steps);
         return result;
       }
     result.solves = measure_implicit_solves(scene, "deformed", deformed(capsule), Tangent::positive, dt);
@@ -278,11 +290,6 @@ namespace
     refine_around(scene, capsule.initial());
     result.solves_at_sphere = measure_implicit_solves(scene, "sphere", capsule.initial(), Tangent::exact, dt);
     progress(result.solves_at_sphere);
-    const SceneDescription enriched = sheared_sphere(cells, Interface::enriched);
-    const auto             steps    = [&](const SceneDescription &description, const std::string &name, Entries &entries) {
-      entries = measure_steps(description, dt, name);
-      progress(entries);
-    };
     steps(sheared_sphere(cells), "plain ", result.plain_steps);
     steps(enriched, "", result.steps);
     steps(with_viscosity_ratio(enriched, 5.), "viscous ", result.viscous_steps);
@@ -313,9 +320,9 @@ namespace
     Options options;
     for (std::size_t i = 0; i < words.size(); ++i)
       {
-        if (words[i] == "--ml")
+        if (words[i] == "--ml" || words[i] == "--steps")
           {
-            options.ml = true;
+            (words[i] == "--ml" ? options.ml : options.steps) = true;
             continue;
           }
         const std::string name = words[i], value = ++i < words.size() ? words[i] : "";
@@ -326,7 +333,7 @@ namespace
         else
           options.cells.clear();
         if (options.cells.empty() || !(options.dt > 0.))
-          throw InputError("step_cost: got '" + name + " " + value + "'; allowed: --cells 32,64,128 (at least 8 each), --dt 0.1 and --ml");
+          throw InputError("step_cost: got '" + name + " " + value + "'; allowed: --cells 32,64,128 (at least 8 each), --dt 0.1, --ml and --steps");
       }
     return options;
   }
@@ -338,7 +345,7 @@ namespace
     const Options            options = parse(words);
     std::vector<Measurement> all;
     for (const unsigned int cells : options.cells)
-      all.push_back(measure(cells, options.dt, options.ml));
+      all.push_back(measure(cells, options));
     if (!is_first_rank())
       return;
     const std::string dt = formatted("%g", options.dt);
@@ -349,6 +356,8 @@ namespace
       std::cout << table("That solve, and the same with assembled matrices and algebraic multigrid (ML); set-up without what the mesh takes alone:",
                          all,
                          &Measurement::algebraic);
+    else if (options.steps)
+      std::cout << table("Steps of the program from rest, enriched interface:", all, &Measurement::steps);
     else
       std::cout
         << table("Implicit solves at the sphere with (dt E_s/(mu a), dt kappa_B/(mu a^3)), dt = " + dt + ", iterations and s:",
@@ -364,7 +373,7 @@ namespace
                  &Measurement::steps)
         << table("Plain interface:", all, &Measurement::plain_steps) << table("Enriched, viscosity ratio 5:", all, &Measurement::viscous_steps)
         << table("Enriched, two capsules:", all, &Measurement::pair_steps);
-    if (all.size() > 1)
+    if (all.size() > 1 && !options.steps)
       std::cout << table_of_exponents(all);
   }
 } // namespace

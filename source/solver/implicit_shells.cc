@@ -12,21 +12,39 @@
 
 namespace tanktread
 {
-  ImplicitShells::ImplicitShells(const ShellLayout &layout, SolverMemory &memory)
+  namespace
+  {
+    /** A V-cycle that leaves more than this of an error is no match for factors. */
+    constexpr double largest_convergence_factor = 0.7;
+  } // namespace
+
+
+  ImplicitShells::ImplicitShells(const Capsule &capsule, const ShellLayout &layout, SolverMemory &memory)
     : layout_(layout)
     , memory_(memory)
+    , multigrids_(layout.n_capsules())
     , factors_(layout.n_capsules())
+    , has_factors_(layout.n_capsules(), true)
   {
+    int n_ranks, rank;
+    MPI_Comm_size(layout.team(), &n_ranks);
+    MPI_Comm_rank(layout.team(), &rank);
+    const auto hierarchy = std::make_shared<LoopHierarchy>(capsule.topology(), capsule.surface().pattern(), n_ranks, rank);
     for (unsigned int c = 0; c < layout.n_capsules(); ++c)
-      if (layout.owns(c))
-        factors_[c] = std::make_unique<BlockFactorisation>();
+      {
+        if (layout.works_on(c) && hierarchy->ends_coarse())
+          multigrids_[c] = std::make_unique<ShellMultigrid>(hierarchy, layout.team());
+        if (layout.owns(c))
+          factors_[c] = std::make_unique<BlockFactorisation>();
+      }
   }
 
 
   bool
   ImplicitShells::serves(const double tau) const
   {
-    return memory_.tau > 0. && !memory_.worn_out && tau <= 1.5 * memory_.tau && memory_.tau <= 1.5 * tau;
+    const bool is_dear = std::any_of(has_factors_.begin(), has_factors_.end(), [](const bool has) { return has; });
+    return is_dear && memory_.tau > 0. && !memory_.worn_out && tau <= 1.5 * memory_.tau && memory_.tau <= 1.5 * tau;
   }
 
 
@@ -37,13 +55,13 @@ namespace tanktread
   }
 
 
-  void
-  ImplicitShells::factorise(const unsigned int c)
+  SparseMatrix
+  ImplicitShells::matrix(const unsigned int c) const
   {
     SparseMatrix sum = memory_.operators[c].K_pi;
     sum.coeffs() *= memory_.tau;
     add_for_three_components(memory_.operators[c].Z, sum, drift(c));
-    factors_[c]->factorise(sum, "The shell's implicit operator, for this time step,");
+    return sum;
   }
 
 
@@ -52,14 +70,28 @@ namespace tanktread
   {
     memory_.operators = std::move(operators);
     memory_.tau       = tau;
+    std::fill(has_factors_.begin(), has_factors_.end(), 0);
     try
       {
+        std::vector<SparseMatrix> matrices(layout_.n_capsules());
+        for (unsigned int c = 0; c < layout_.n_capsules(); ++c)
+          {
+            if (!layout_.works_on(c))
+              {
+                memory_.operators[c] = {};
+                continue;
+              }
+            matrices[c] = matrix(c);
+            if (multigrids_[c])
+              multigrids_[c]->set_up(matrices[c]);
+            const bool is_good = multigrids_[c] && multigrids_[c]->convergence_factor() < largest_convergence_factor;
+            has_factors_[c]    = layout_.owns(c) && !is_good;
+          }
+        MPI_Allreduce(MPI_IN_PLACE, has_factors_.data(), int(has_factors_.size()), MPI_CHAR, MPI_MAX, layout_.communicator());
         on_all_ranks(layout_.communicator(), [&] {
           for (unsigned int c = 0; c < layout_.n_capsules(); ++c)
-            if (layout_.owns(c))
-              factorise(c);
-            else
-              memory_.operators[c] = {};
+            if (has_factors_[c] && layout_.owns(c))
+              factors_[c]->factorise(matrices[c], "The shell's implicit operator, for this time step,");
         });
       }
     catch (...)
@@ -105,18 +137,24 @@ namespace tanktread
   ControlPoints
   ImplicitShells::velocity(const unsigned int c, const ControlPoints &force) const
   {
-    if (!factors_[c])
+    ControlPoints result;
+    if (!has_factors_[c] && layout_.works_on(c))
+      result = multigrids_[c]->solve(force);
+    if (!layout_.owns(c))
       return ControlPoints::Zero(force.rows(), 3);
-    const Eigen::VectorXd solution = factors_[c]->solve(Eigen::Map<const Eigen::VectorXd>(force.data(), force.size()));
-    return Eigen::Map<const ControlPoints>(solution.data(), force.rows(), 3);
+    if (has_factors_[c])
+      {
+        const Eigen::VectorXd solution = factors_[c]->solve(Eigen::Map<const Eigen::VectorXd>(force.data(), force.size()));
+        result                         = Eigen::Map<const ControlPoints>(solution.data(), force.rows(), 3);
+      }
+    return result;
   }
 
 
   ControlPoints
   ImplicitShells::damped(const unsigned int c, const ControlPoints &force) const
   {
-    if (!factors_[c])
-      return ControlPoints::Zero(force.rows(), 3);
-    return memory_.operators[c].Z * velocity(c, force) * drift(c).transpose();
+    const ControlPoints undamped = velocity(c, force);
+    return layout_.owns(c) ? ControlPoints(memory_.operators[c].Z * undamped * drift(c).transpose()) : undamped;
   }
 } // namespace tanktread

@@ -33,7 +33,7 @@ namespace tanktread
     , timings_(timings)
     , layout_(level.coupling().n_capsules(), level.coupling().capsule().n_control_points(), level.elasticity().communicator())
     , volume_(level.coupling().capsule().volume())
-    , implicit_shells_(layout_, memory)
+    , implicit_shells_(level.coupling().capsule(), layout_, memory)
   {}
 
 
@@ -59,8 +59,7 @@ namespace tanktread
     Eigen::Index n   = 0;
     for (unsigned int c = 0; c < r.capsules.size(); ++c)
       {
-        if (layout_.owns(c))
-          sum += implicit_shells_.velocity(c, r.capsules[c].force).squaredNorm();
+        sum += implicit_shells_.velocity(c, r.capsules[c].force).squaredNorm();
         n += r.capsules[c].force.rows();
       }
     sum = dealii::Utilities::MPI::sum(sum, layout_.communicator());

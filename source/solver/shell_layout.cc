@@ -15,7 +15,17 @@ namespace tanktread
     , communicator_(communicator)
     , rank_(dealii::Utilities::MPI::this_mpi_process(communicator))
     , n_ranks_(dealii::Utilities::MPI::n_mpi_processes(communicator))
-  {}
+    , team_(new MPI_Comm(MPI_COMM_NULL), [](MPI_Comm *const team) {
+      MPI_Comm_free(team);
+      delete team;
+    })
+  {
+    unsigned int first = rank_;
+    for (unsigned int c = 0; c < n_capsules; ++c)
+      if (works_on(c))
+        first = owner(c);
+    MPI_Comm_split(communicator, int(first), int(rank_), team_.get());
+  }
 
 
   unsigned int
@@ -29,6 +39,14 @@ namespace tanktread
   ShellLayout::owner(const unsigned int c) const
   {
     return std::size_t(c) * n_ranks_ / n_capsules_;
+  }
+
+
+  bool
+  ShellLayout::works_on(const unsigned int c) const
+  {
+    const unsigned int next = c + 1 < n_capsules_ ? std::max(owner(c + 1), owner(c) + 1) : n_ranks_;
+    return owner(c) <= rank_ && rank_ < next;
   }
 
 

@@ -91,7 +91,7 @@ namespace tanktread::oracle
     flow(const ShellFields &F, const double tolerance, const unsigned int n_sweeps = 0)
     {
       const ShellLayout              layout(shells.size(), scene.capsule().n_control_points(), MPI_COMM_WORLD);
-      ImplicitShells                 implicit_shells(layout, scene.memory());
+      ImplicitShells                 implicit_shells(scene.capsule(), layout, scene.memory());
       const LinearisedShells         linear = at_rest(implicit_shells);
       Flow                           result{layout.vector(fluid.space()), {}, {}, 0};
       const MonolithicOperator       matrix(fluid.stokes(), linear, layout);

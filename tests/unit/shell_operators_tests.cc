@@ -124,10 +124,10 @@ TEST(BlockFactorisation, Solves)
 
 TEST(ImplicitShells, AreKeptWhileTheyServe)
 {
-  StartedScene        scene(small_scene({5., 0.2}, 1., {}, tight(1e-8, 1e-8)));
+  StartedScene        scene(without_coarser_control_meshes(small_scene({5., 0.2}, 1., {}, tight(1e-8, 1e-8))));
   const ShellLayout   layout(1, scene.capsule().n_control_points(), MPI_COMM_WORLD);
   SolverMemory        memory;
-  ImplicitShells      implicit_shells(layout, memory);
+  ImplicitShells      implicit_shells(scene.capsule(), layout, memory);
   const SparseMatrix &Z = scene.capsule().mass();
   const SparseMatrix  K = random_blocks(scene.capsule().surface(), 1e-3);
   EXPECT_FALSE(implicit_shells.serves(0.1));
@@ -166,6 +166,36 @@ TEST(ImplicitShells, AreKeptWhileTheyServe)
   minus_Z *= -1.;
   EXPECT_THROW(implicit_shells.renew({{Z, minus_Z, Eigen::Matrix3d::Zero()}}, 1.), NumericalError);
   EXPECT_FALSE(implicit_shells.serves(1.));
+}
+
+
+TEST(ImplicitShells, AreFactorsWhereAVCycleDoesNotConverge)
+{
+  StartedScene        scene(small_scene({5., 0.2}, 1., {}, tight(1e-8, 1e-8)));
+  const ShellLayout   layout(1, scene.capsule().n_control_points(), MPI_COMM_WORLD);
+  SolverMemory        memory;
+  ImplicitShells      implicit_shells(scene.capsule(), layout, memory);
+  const SparseMatrix &Z      = scene.capsule().mass();
+  const auto          defect = [&](const SparseMatrix &K) { // of S^{-1}
+    const ControlPoints force = smooth_field(scene.x()), velocity = implicit_shells.velocity(0, force);
+    return layout.owns(0) ? (Z * velocity + nodal(K * flat(velocity)) - force).norm() / force.norm() : 0.;
+  };
+  const SparseMatrix weak = random_blocks(scene.capsule().surface(), 1e-5);
+  implicit_shells.renew({{Z, weak, Eigen::Matrix3d::Zero()}}, 1.);
+  EXPECT_LT(defect(weak), 0.1);
+  if (layout.owns(0))
+    {
+      EXPECT_GT(defect(weak), 1e-6);
+    }
+  EXPECT_FALSE(implicit_shells.serves(1.)); // a new one costs little
+
+  // Indefinite: a membrane under pressure from its sides.
+  SparseMatrix indefinite = scene.capsule().surface().pattern().block_matrix();
+  add_for_three_components(laplace_beltrami(scene.capsule().surface(), scene.x()), indefinite);
+  indefinite *= -0.03;
+  implicit_shells.renew({{Z, indefinite, Eigen::Matrix3d::Zero()}}, 1.);
+  EXPECT_LT(defect(indefinite), 1e-10);
+  EXPECT_TRUE(implicit_shells.serves(1.));
 }
 
 

@@ -8,6 +8,7 @@
 
 #include <tanktread/solver/scene.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace tanktread
@@ -63,6 +64,16 @@ namespace tanktread
     result.fluid_mesh.finest_cell   = finest_cell;
     result.solver                   = solver;
     return result;
+  }
+
+
+  /** The same control mesh with the vertices of a face listed from another one on, so that it does not tell any more of which mesh it is a refinement. */
+  inline SceneDescription
+  without_coarser_control_meshes(SceneDescription scene)
+  {
+    auto &face = scene.shape.topology.faces.front();
+    std::rotate(face.begin(), face.begin() + 1, face.end());
+    return scene;
   }
 
 

@@ -48,7 +48,7 @@ TEST(ConstantPressureJump, DrivesNoFlow)
   scene.move_points();
   const ShellLayout layout(1, state.x.rows(), MPI_COMM_WORLD);
   SolverMemory      memory;
-  ImplicitShells    implicit_shells(layout, memory);
+  ImplicitShells    implicit_shells(scene.capsule(), layout, memory);
   Linearisation     at_rest;
   at_rest.derivatives = PointDerivatives::frozen;
   const LinearisedShells shells(scene.elasticity(),
@@ -167,7 +167,7 @@ TEST(Newton, ConvergesQuadratically)
 
 TEST(Newton, FindsTheSameWithAnOldImplicitOperator)
 {
-  StartedScene scene(small_scene({5., 0.2}, 1., ellipsoid(1.3, 1.1, 1.), tight(1e-7, 1e-3)));
+  StartedScene scene(without_coarser_control_meshes(small_scene({5., 0.2}, 1., ellipsoid(1.3, 1.1, 1.), tight(1e-7, 1e-3))));
   scene.solver().solve_flow(scene.state);
   const State        start = scene.state;
   const ShellFields  x_n   = positions(start);

@@ -73,7 +73,7 @@ namespace
     const DistributedShell elasticity(serial, scene.capsule().topology(), MPI_COMM_WORLD);
     const ShellLayout      layout(1, scene.capsule().n_control_points(), MPI_COMM_WORLD);
     SolverMemory           memory;
-    ImplicitShells         implicit(layout, memory);
+    ImplicitShells         implicit(scene.capsule(), layout, memory);
     State                  state = scene.state;
     state.capsules[0].force      = serial.force(scene.x());
     const LinearisedShells         linear(elasticity,

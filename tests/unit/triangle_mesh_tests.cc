@@ -74,6 +74,25 @@ namespace
       }
   }
 
+  TEST(LoopRefine, IsUndone)
+  {
+    for (const TriangleMesh &mesh : {icosphere(0), icosphere(2), octahedron()})
+      {
+        const TriangleMesh fine   = loop_refine(mesh);
+        const auto         coarse = loop_coarsen(fine);
+        ASSERT_TRUE(coarse);
+        EXPECT_EQ(coarse->faces, mesh.faces);
+        EXPECT_EQ(coarse->vertices.size(), mesh.vertices.size());
+        const ControlPoints made = loop_subdivision(*coarse) * positions(mesh);
+        EXPECT_LT((made - positions(fine)).norm(), 1e-15 * made.norm());
+      }
+    TriangleMesh other = icosphere(2);
+    std::rotate(other.faces[7].begin(), other.faces[7].begin() + 1, other.faces[7].end());
+    EXPECT_FALSE(loop_coarsen(other));
+    EXPECT_FALSE(loop_coarsen(icosphere(0)));
+    EXPECT_FALSE(loop_coarsen(octahedron()));
+  }
+
   /** What is said of the mesh. */
   std::string
   message(const TriangleMesh &mesh)

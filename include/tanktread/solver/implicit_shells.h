@@ -7,6 +7,7 @@
 #include <tanktread/fluid/linear_solver.h>
 #include <tanktread/solver/block_factorisation.h>
 #include <tanktread/solver/shell_layout.h>
+#include <tanktread/solver/shell_multigrid.h>
 #include <tanktread/solver/solver_memory.h>
 
 #include <memory>
@@ -15,25 +16,24 @@
 namespace tanktread
 {
   /**
-   * For each capsule the map Z_tau (Z_tau + tau K_pi)^{-1}, Z_tau = Z (1 - tau grad u_inf), by which LinearisedShells multiplies the force row of the Newton
+   * For each capsule the map Z_tau S^{-1}, S = Z_tau + tau K_pi, Z_tau = Z (1 - tau grad u_inf), by which LinearisedShells multiplies the force row of the Newton
    * system: Z, tau and
    * K_pi = K - pi H_V of some linearisation.
    *
-   * Any regular matrix would leave the solution of the system unchanged; this one makes it fast. So one made for an earlier shape serves as long as it makes it
-   * fast
-   * enough, which linear solves are watched for. All capsules' operators are renewed together.
-   *
-   * Factors are on the rank that owns the capsule only.
+   * Any regular matrix would leave the solution of the system unchanged; this one makes it fast. S^{-1} is one V-cycle of ShellMultigrid where that converges,
+   * on the ranks of the capsule's team, and made anew for each linearisation. Where S is indefinite, and on control meshes that no
+   * subdivision has made, it is LU factors, on the rank that owns the capsule: as they are dear, those of an earlier shape serve as long as the solver is
+   * fast with them, which linear solves are watched for. All capsules' operators are renewed together.
    */
   class ImplicitShells
   {
   public:
-    /** Both are kept by reference. */
-    ImplicitShells(const ShellLayout &layout, SolverMemory &memory);
+    /** All are kept by reference. */
+    ImplicitShells(const Capsule &capsule, const ShellLayout &layout, SolverMemory &memory);
 
     /**
-     * Whether there are operators that are expected to do well with a step of length tau: made for one that differs by a factor of 1.5 at most, and not worn
-     * out.
+     * Whether there are operators that are worth keeping for a step of length tau: one of them has factors; made for one that differs by a factor of 1.5 at
+     * most; and not worn out.
      */
     bool
     serves(double tau) const;
@@ -64,20 +64,18 @@ namespace tanktread
       return memory_.n_renewals;
     }
 
-    /** Z_tau (Z_tau + tau K_pi)^{-1} force of capsule c on the rank that owns it, zero on the others. */
+    /** Z_tau S^{-1} force of capsule c on the rank that owns it, zero on the others. Collective. */
     ControlPoints
     damped(unsigned int c, const ControlPoints &force) const;
 
-    /**
-     * (Z_tau + tau K_pi)^{-1} force of capsule c on the rank that owns it, zero on the others: about how fast the shell moves to balance a force that is
-     * missing.
-     */
+    /** S^{-1} force of capsule c on the rank that owns it, zero on the others: about how fast the shell moves to balance a force that is missing. Collective. */
     ControlPoints
     velocity(unsigned int c, const ControlPoints &force) const;
 
   private:
-    void
-    factorise(unsigned int c);
+    /** S of a capsule that this rank works on. */
+    SparseMatrix
+    matrix(unsigned int c) const;
     /** 1 - tau grad u_inf. */
     Eigen::Matrix3d
     drift(unsigned int c) const;
@@ -86,7 +84,9 @@ namespace tanktread
 
     const ShellLayout                               &layout_;
     SolverMemory                                    &memory_;
-    std::vector<std::unique_ptr<BlockFactorisation>> factors_; // of the capsules of this rank
+    std::vector<std::unique_ptr<ShellMultigrid>>     multigrids_;  // of the capsules that this rank works on, if there are coarser control meshes
+    std::vector<std::unique_ptr<BlockFactorisation>> factors_;     // of the capsules of this rank
+    std::vector<char>                                has_factors_; // and uses them, as all ranks know
   };
 } // namespace tanktread
 

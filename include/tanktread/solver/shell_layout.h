@@ -9,6 +9,7 @@
 
 #include <mpi.h>
 
+#include <memory>
 #include <vector>
 
 namespace tanktread
@@ -25,7 +26,8 @@ namespace tanktread
 
   /**
    * Capsule c has the entries c n, ..., (c + 1) n - 1 of the shell block, n = 1 + 3 NP; all of them belong to one rank, and each rank has capsules that follow
-   * each other.
+   * each other. Where there are more ranks than capsules, a team of ranks that follow each other, its owner the first, works on each capsule; otherwise each rank
+   * works on its own ones alone.
    */
   class ShellLayout
   {
@@ -50,6 +52,15 @@ namespace tanktread
     {
       return communicator_;
     }
+    /** Whether this rank is in the team of capsule c. */
+    bool
+    works_on(unsigned int c) const;
+    /** The team that this rank is in. */
+    MPI_Comm
+    team() const
+    {
+      return *team_;
+    }
 
     /** Zero vector with blocks (u, p, shells). Collective. */
     FluidBlockVector
@@ -68,9 +79,10 @@ namespace tanktread
     unsigned int
     first_capsule(unsigned int rank) const;
 
-    unsigned int n_capsules_, n_control_points_;
-    MPI_Comm     communicator_;
-    unsigned int rank_, n_ranks_;
+    unsigned int              n_capsules_, n_control_points_;
+    MPI_Comm                  communicator_;
+    unsigned int              rank_, n_ranks_;
+    std::shared_ptr<MPI_Comm> team_;
   };
 } // namespace tanktread
 

@@ -4,9 +4,10 @@
 #ifndef tanktread_surface_triangle_mesh_h
 #define tanktread_surface_triangle_mesh_h
 
-#include <Eigen/Core>
+#include <tanktread/surface/types.h>
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,16 @@ namespace tanktread
    */
   TriangleMesh
   loop_refine(const TriangleMesh &coarse);
+
+  /** That step as a matrix: from the vertices of the coarse mesh to those of the fine one. Limit surfaces of the coarse mesh are among those of the fine one. */
+  SparseMatrix
+  loop_subdivision(const TriangleMesh &coarse);
+
+  /**
+   * The mesh of which loop_refine() makes these faces, numbered alike, if there is one. What positions its vertices have had is not told: they are zero.
+   */
+  std::optional<TriangleMesh>
+  loop_coarsen(const TriangleMesh &fine);
 
   /**
    * Sphere with 10 * 4^level + 2 vertices on the unit sphere, outward oriented: an icosahedron after `level` Loop refinements, its vertices moved to the
