@@ -236,7 +236,7 @@ namespace
       FluidBlockVector load, fields;
       scene.fluid.space().reinit(load);
       scene.fluid.space().reinit(fields);
-      scene.coupling.spread_plainly({F}, load);
+      scene.coupling.spread_plainly(scene.coupling.density({F}), load);
       solve_fgmres(scene.fluid.stokes(), scene.fluid.preconditioner(), fields, load, 1e-6, 200);
     });
 

@@ -53,12 +53,9 @@ namespace tanktread
     interpolation_->reinit(points_);
     for (unsigned int c = 0; c < n_capsules(); ++c)
       transfers_[c].move(shells[c], *interpolation_);
-    if (!jumps_->are_none())
-      {
-        normal_forces_.resize(3 * interpolation_->local_points().size());
-        for (const ShellTransfer &transfer : transfers_)
-          transfer.set_point_forces(transfer.shell().normal_field(), normal_forces_);
-      }
+    normal_forces_.resize(3 * interpolation_->local_points().size());
+    for (const ShellTransfer &transfer : transfers_)
+      transfer.set_point_forces(transfer.shell().normal_field(), normal_forces_);
     jumps_->move(transfers_, *interpolation_);
     moved_ = true;
   }
@@ -85,50 +82,48 @@ namespace tanktread
 
 
   void
-  Coupling::set_point_forces(const ShellFields &f, std::vector<double> &forces) const
+  Coupling::set_point_forces(const ShellFields &g, std::vector<double> &forces) const
   {
     forces.resize(3 * interpolation_->local_points().size());
     for (unsigned int c = 0; c < n_capsules(); ++c)
-      {
-        capsule_.mass_inverse().solve(f[c], density_);
-        transfers_[c].set_point_forces(density_, forces);
-      }
+      transfers_[c].set_point_forces(g[c], forces);
   }
 
 
   void
-  Coupling::extend(const ShellFields &f, ExtendedForces &forces) const
+  Coupling::extend(const ShellFields &g, ExtendedForces &forces) const
   {
+    set_point_forces(g, forces.at_points);
+    forces.normal_parts.assign(n_capsules(), 0.);
     if (jumps_->are_none())
       return;
-    set_point_forces(f, forces.at_points);
     for (unsigned int c = 0; c < n_capsules(); ++c)
       {
-        const ShellConfiguration &shell  = transfers_[c].shell();
-        const double              factor = shell.normal_field().cwiseProduct(f[c]).sum() / shell.normal_square();
+        const ShellConfiguration &shell = transfers_[c].shell();
+        forces.normal_parts[c]          = shell.volume_gradient().cwiseProduct(g[c]).sum() / shell.normal_square(); // m . f = v . g
         for (std::size_t i = 3 * std::size_t(transfers_[c].range().begin); i < 3 * std::size_t(transfers_[c].range().end); ++i)
-          forces.at_points[i] -= factor * normal_forces_[i];
+          forces.at_points[i] -= forces.normal_parts[c] * normal_forces_[i];
       }
     jumps_->extend(forces);
   }
 
 
   void
-  Coupling::extend_whole(const ShellFields &f, ExtendedForces &forces) const
+  Coupling::extend_whole(const ShellFields &g, ExtendedForces &forces) const
   {
-    extend(f, forces);
+    extend(g, forces);
     if (!jumps_->are_none())
       jumps_->complete(forces);
   }
 
 
   void
-  Coupling::update_viscous_forces(const FluidBlockVector &fields, const ShellFields &f)
+  Coupling::update_viscous_forces(const FluidBlockVector &fields, const ShellFields &g)
   {
     if (jumps_->are_none() || contrast_.ratio == 1.)
       return;
     ExtendedForces forces;
-    extend_whole(f, forces);
+    extend_whole(g, forces);
     interpolation_->gradients(fields, moments_);
     for (const ShellTransfer &transfer : transfers_)
       {
@@ -141,12 +136,12 @@ namespace tanktread
 
 
   double
-  Coupling::undisturbed_work(const ShellFields &f) const
+  Coupling::undisturbed_work(const ShellFields &g) const
   {
     if (jumps_->are_none() || contrast_.ratio == 1.)
       return 0.;
     ExtendedForces forces;
-    extend_whole(f, forces);
+    extend_whole(g, forces);
     return jumps_->undisturbed_work(forces);
   }
 
@@ -216,7 +211,7 @@ namespace tanktread
   Coupling::interpolate(const FluidBlockVector &fields, const ShellFields &f) const
   {
     ExtendedForces forces;
-    extend(f, forces);
+    extend(density(f), forces);
     return interpolate(fields, forces);
   }
 
@@ -255,12 +250,12 @@ namespace tanktread
 
 
   void
-  Coupling::carry_pressure(const ShellFields &f, const std::vector<VertexSides *> &sides, FluidBlockVector &fields) const
+  Coupling::carry_pressure(const ShellFields &g, const std::vector<VertexSides *> &sides, FluidBlockVector &fields) const
   {
     if (jumps_->are_none() || !moved_)
       return;
     ExtendedForces forces;
-    extend_whole(f, forces);
+    extend_whole(g, forces);
     for (unsigned int c = 0; c < n_capsules(); ++c)
       jumps_->carry_pressure(c, forces, *sides[c], fields);
   }
@@ -288,9 +283,9 @@ namespace tanktread
 
 
   void
-  Coupling::spread_plainly(const ShellFields &f, FluidBlockVector &load) const
+  Coupling::spread_plainly(const ShellFields &g, FluidBlockVector &load) const
   {
-    set_point_forces(f, values_);
+    set_point_forces(g, values_);
     interpolation_->add_load(values_, {}, load);
   }
 
@@ -299,24 +294,28 @@ namespace tanktread
   Coupling::spread(const ShellFields &f, FluidBlockVector &load) const
   {
     ExtendedForces forces;
-    extend(f, forces);
-    spread(1., f, forces, load);
+    extend(density(f), forces);
+    spread(1., forces, std::vector<double>(n_capsules(), 0.), load);
   }
 
 
   void
-  Coupling::spread(const double factor, const ShellFields &f, const ExtendedForces &forces, FluidBlockVector &load) const
+  Coupling::spread(const double factor, const ExtendedForces &f, const std::vector<double> &pressure_jumps, FluidBlockVector &load) const
   {
-    set_point_forces(f, values_);
-    for (double &value : values_)
-      value *= factor;
+    values_.resize(f.at_points.size());
+    for (unsigned int c = 0; c < n_capsules(); ++c)
+      {
+        const double normal_part = f.normal_parts[c] + pressure_jumps[c];
+        for (std::size_t i = 3 * std::size_t(transfers_[c].range().begin); i < 3 * std::size_t(transfers_[c].range().end); ++i)
+          values_[i] = factor * (f.at_points[i] + normal_part * normal_forces_[i]);
+      }
     interpolation_->add_load(values_, {}, load);
-    jumps_->add_load(forces, factor, load);
+    jumps_->add_load(f, factor, load);
   }
 
 
   void
-  Coupling::spread_with_motion(const ShellFields &f, const ShellFields &dx, const ShellFields &g, FluidBlockVector &load) const
+  Coupling::spread_with_motion(const ShellFields &g, const ShellFields &dx, const ShellFields &g0, FluidBlockVector &load) const
   {
     if (!knows_motion())
       throw std::logic_error("The enriched interface does not know how its load changes when the points move.");
@@ -324,10 +323,7 @@ namespace tanktread
     values_.resize(3 * n);
     moments_.resize(9 * n);
     for (unsigned int c = 0; c < n_capsules(); ++c)
-      {
-        capsule_.mass_inverse().solve(f[c], density_);
-        transfers_[c].set_point_moments(density_, g[c], dx[c], values_, moments_);
-      }
+      transfers_[c].set_point_moments(g[c], g0[c], dx[c], values_, moments_);
     interpolation_->add_load(values_, moments_, load);
   }
 

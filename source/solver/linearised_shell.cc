@@ -47,32 +47,44 @@ namespace tanktread
                                    const CapsuleState                              &state,
                                    const std::shared_ptr<const ShellConfiguration> &shell,
                                    const ControlPoints                             &velocity,
-                                   VelocityGradients                                velocity_gradient,
+                                   const VelocityGradients                         &velocity_gradient,
                                    const Linearisation                             &choice)
     : capsule_(shell->capsule())
     , shell_(shell)
     , tau_(choice.tau)
     , pressure_jump_(state.pressure_jump)
-    , density_(choice.derivatives == PointDerivatives::complete ? capsule_.density(state.force + state.pressure_jump * shell->volume_gradient()) :
-                                                                  ControlPoints::Zero(state.x.rows(), 3))
+    , density_(ControlPoints::Zero(state.x.rows(), 3))
   {
+    if (choice.derivatives == PointDerivatives::complete)
+      density_ = capsule_.density(state.force) + state.pressure_jump * shell->normal_field();
     if (tau_ == 0.)
       return;
-    const SparseMatrix &volume_hessian = shell->volume_hessian();
-    SparseMatrix        gamma;
-    velocity_gradient += coupling.transfer(c).gradients(choice.flow, *shell);
-    coupling.gradient_matrix(c, velocity_gradient, gamma);
-    flux_gradient_ = nodal(gamma.transpose() * flat(shell->normal_field()) + volume_hessian * flat(velocity));
+    MotionTerms           terms;
+    const Eigen::Matrix3d G              = gradient_about(choice.flow, shell->x());
+    const SparseMatrix   &volume_hessian = shell->volume_hessian();
+    flux_gradient_                       = shell->volume_gradient() * G + nodal(volume_hessian * flat(velocity));
+    if (choice.derivatives == PointDerivatives::complete || choice.flow.quadratic.norm_square() > 0.)
+      {
+        VelocityGradients excess = coupling.transfer(c).gradients(choice.flow, *shell);
+        if (choice.derivatives == PointDerivatives::complete)
+          excess += velocity_gradient;
+        for (unsigned int component = 0; component < 9; ++component)
+          excess.col(component).array() -= G(component / 3, component % 3);
+        coupling.gradient_matrix(c, excess, terms.gradient);
+        flux_gradient_ += nodal(terms.gradient.transpose() * flat(shell->normal_field()));
+        terms.gradient.coeffs() *= tau_;
+      }
 
     ControlPoints force;
     elasticity.force_and_tangent(state.x, force, stiffness_, choice.tangent);
     if (choice.tangent == Tangent::exact)
       stiffness_.coeffs() -= state.pressure_jump * volume_hessian.coeffs();
 
-    gamma.coeffs() *= tau_;
+    terms.drift = tau_ * G;
     if (std::abs(state.volume_shift) <= choice.h / (2. * dealii::numbers::PI))
-      gamma.coeffs() += state.volume_shift * volume_hessian.coeffs();
-    motion_.emplace(capsule_, std::move(gamma), choice.accuracy);
+      terms.volume_shift = state.volume_shift;
+    terms.volume_hessian = &volume_hessian;
+    motion_.emplace(capsule_, std::move(terms), choice.accuracy);
     volume_response_ = motion_->solve(shell->volume_gradient());
   }
 
@@ -152,14 +164,14 @@ namespace tanktread
   }
 
 
-  LinearisedShells::LinearisedShells(const DistributedShell        &elasticity,
-                                     const Coupling                &coupling,
-                                     const State                   &state,
-                                     const ShellConfigurations     &shells,
-                                     const ShellFields             &velocities,
-                                     std::vector<VelocityGradients> velocity_gradients,
-                                     const Linearisation           &choice,
-                                     ImplicitShells                &implicit_shells)
+  LinearisedShells::LinearisedShells(const DistributedShell               &elasticity,
+                                     const Coupling                       &coupling,
+                                     const State                          &state,
+                                     const ShellConfigurations            &shells,
+                                     const ShellFields                    &velocities,
+                                     const std::vector<VelocityGradients> &velocity_gradients,
+                                     const Linearisation                  &choice,
+                                     ImplicitShells                       &implicit_shells)
     : coupling_(coupling)
     , implicit_shells_(implicit_shells)
     , tau_(choice.tau)
@@ -167,7 +179,7 @@ namespace tanktread
   {
     shells_.reserve(shells.size());
     for (unsigned int c = 0; c < shells.size(); ++c)
-      shells_.emplace_back(elasticity, coupling, c, state.capsules[c], shells[c], velocities[c], std::move(velocity_gradients[c]), choice);
+      shells_.emplace_back(elasticity, coupling, c, state.capsules[c], shells[c], velocities[c], velocity_gradients[c], choice);
     if (tau_ == 0. || implicit_shells.serves(tau_))
       return;
     std::vector<ImplicitOperator> operators;

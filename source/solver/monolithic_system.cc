@@ -5,22 +5,35 @@
 
 namespace tanktread
 {
+  namespace
+  {
+    std::vector<double>
+    pressure_jumps(const std::vector<ShellUnknowns> &unknowns)
+    {
+      std::vector<double> result;
+      for (const ShellUnknowns &of_capsule : unknowns)
+        result.push_back(of_capsule.pressure_jump);
+      return result;
+    }
+  } // namespace
+
+
   ShellFields
-  forces(const std::vector<ShellUnknowns> &unknowns)
+  densities(const std::vector<ShellUnknowns> &unknowns)
   {
     ShellFields result;
     for (const ShellUnknowns &of_capsule : unknowns)
-      result.push_back(of_capsule.force);
+      result.push_back(of_capsule.density);
     return result;
   }
 
 
   ShellFields
-  forces_with_pressure(const std::vector<ShellUnknowns> &unknowns, const LinearisedShells &shells)
+  densities_with_pressure(const std::vector<ShellUnknowns> &unknowns, const LinearisedShells &shells)
   {
     ShellFields result;
     for (unsigned int c = 0; c < shells.size(); ++c)
-      result.push_back(unknowns[c].force + unknowns[c].pressure_jump * shells[c].volume_gradient());
+      result.push_back(unknowns[c].density + unknowns[c].pressure_jump * shells[c].normal_field());
     return result;
   }
 
@@ -33,7 +46,7 @@ namespace tanktread
     ShellFields                      moments, dx;
     {
       const Timings::Scope scope(timings_, "- coupling");
-      coupling.extend(forces(unknowns), forces_);
+      coupling.extend(densities(unknowns), forces_);
       moments = coupling.velocity_moments(src, forces_);
     }
     {
@@ -51,23 +64,22 @@ namespace tanktread
       }
     {
       const Timings::Scope scope(timings_, "- coupling");
-      ShellFields          force = forces_with_pressure(unknowns, shells_);
       if (shells_.points_move())
         {
-          ShellFields density = shells_.densities();
+          ShellFields change = densities_with_pressure(unknowns, shells_), present = shells_.densities();
           for (unsigned int c = 0; c < shells_.size(); ++c)
             {
-              force[c] *= -1.;
-              density[c] *= -1.;
+              change[c] *= -1.;
+              present[c] *= -1.;
             }
-          coupling.spread_with_motion(force, dx, density, dst);
+          coupling.spread_with_motion(change, dx, present, dst);
         }
       else
-        coupling.spread(-1., force, forces_, dst);
+        coupling.spread(-1., forces_, pressure_jumps(unknowns), dst);
     }
     const Timings::Scope scope(timings_, "- shell");
     for (unsigned int c = 0; c < shells_.size(); ++c)
-      layout_.set(dst, c, -shells_[c].flux(moments[c], dx[c]), shells_.damped(c, unknowns[c].force + shells_[c].stiffness_times(dx[c])));
+      layout_.set(dst, c, -shells_[c].flux(moments[c], dx[c]), shells_.damped(c, shells_[c].force(unknowns[c].density) + shells_[c].stiffness_times(dx[c])));
   }
 
 
@@ -90,16 +102,22 @@ namespace tanktread
   MonolithicPreconditioner::vmult(FluidBlockVector &dst, const FluidBlockVector &src) const
   {
     std::vector<ShellUnknowns> z = layout_.unknowns(src);
-    for (ShellUnknowns &of_capsule : z)
-      of_capsule.pressure_jump /= -volume_;
+    {
+      const Timings::Scope scope(timings_, "- shell");
+      for (unsigned int c = 0; c < shells_.size(); ++c)
+        {
+          z[c].pressure_jump /= -volume_;
+          z[c].density = shells_[c].density(z[c].density); // what came were forces
+        }
+    }
     for (unsigned int b = 0; b <= pressure_block; ++b)
       loads_.block(b) = src.block(b);
     {
       const Timings::Scope scope(timings_, "- coupling");
-      shells_.coupling().spread_plainly(forces_with_pressure(z, shells_), loads_);
+      shells_.coupling().spread_plainly(densities_with_pressure(z, shells_), loads_);
     }
     stokes_.vmult(dst, loads_, timings_);
     for (unsigned int c = 0; c < shells_.size(); ++c)
-      layout_.set(dst, c, z[c].pressure_jump, z[c].force);
+      layout_.set(dst, c, z[c].pressure_jump, z[c].density);
   }
 } // namespace tanktread

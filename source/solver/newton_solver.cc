@@ -81,12 +81,9 @@ namespace tanktread
   NewtonSolver::linearised(const State &state, const Linearisation &choice)
   {
     const Timings::Scope           scope(timings_, "Shell tangent and factorisation");
-    std::vector<VelocityGradients> gradients;
+    std::vector<VelocityGradients> gradients(layout_.n_capsules());
     if (choice.derivatives == PointDerivatives::complete)
       gradients = level_.coupling().velocity_gradients(state.fluid);
-    else
-      for (unsigned int c = 0; c < layout_.n_capsules(); ++c)
-        gradients.push_back(VelocityGradients::Zero(level_.coupling().transfer(c).n_points(), 9));
     if (level_.inertia() != nullptr)
       level_.inertia()->linearise(state.fluid);
     return {level_.elasticity(), level_.coupling(), state, level_.shells(state), level_.shell_velocity(state), std::move(gradients), choice, implicit_shells_};
@@ -138,7 +135,7 @@ namespace tanktread
       increment.fluid.block(b) = solution.block(b);
     const std::vector<ShellUnknowns> unknowns = layout_.unknowns(solution);
     ExtendedForces                   extended;
-    level_.coupling().extend(forces(unknowns), extended);
+    level_.coupling().extend(densities(unknowns), extended);
     const ShellFields moments = level_.coupling().velocity_moments(solution, extended);
     increment.capsules.resize(shells.size());
     for (unsigned int c = 0; c < shells.size(); ++c)
@@ -147,7 +144,7 @@ namespace tanktread
         capsule.pressure_jump = unknowns[c].pressure_jump;
         capsule.x             = dx0[c] + shells[c].displacement(moments[c]);
         capsule.volume_shift  = shells[c].volume_shift(moments[c], r.capsules[c].x, capsule.x);
-        capsule.force         = shells[c].force_change(unknowns[c].force, capsule.x);
+        capsule.force         = shells[c].force_change(shells[c].force(unknowns[c].density), capsule.x);
         // All ranks have computed this alike up to rounding, which differs between kinds of processors: one answer for all, so that they take the same
         // decisions.
         MPI_Bcast(capsule.x.data(), capsule.x.size(), MPI_DOUBLE, 0, layout_.communicator());

@@ -82,12 +82,12 @@ namespace tanktread
 
 
   void
-  ShellLayout::set(FluidBlockVector &vector, const unsigned int c, const double pressure_jump, const ControlPoints &force) const
+  ShellLayout::set(FluidBlockVector &vector, const unsigned int c, const double pressure_jump, const ControlPoints &density) const
   {
     if (!owns(c))
       return;
     double *const entries = vector.block(shell_block).begin() + (1 + 3 * std::size_t(n_control_points_)) * (c - first_capsule(rank_));
     entries[0]            = pressure_jump;
-    std::copy(force.data(), force.data() + force.size(), entries + 1);
+    std::copy(density.data(), density.data() + density.size(), entries + 1);
   }
 } // namespace tanktread

@@ -34,7 +34,7 @@ namespace tanktread
         {
           const dealii::Tensor<2, 3> H       = flow.quadratic * dealii::Tensor<1, 3>({X(q, 0), X(q, 1), X(q, 2)});
           const dealii::Tensor<2, 3> twice_1 = H + transpose(H);
-          const double               density = scalar_product(twice_0, twice_0) / 3. + 2. * scalar_product(twice_0, twice_1) / 4. + scalar_product(twice_1, twice_1) / 5.;
+          const double density = scalar_product(twice_0, twice_0) / 3. + 2. * scalar_product(twice_0, twice_1) / 4. + scalar_product(twice_1, twice_1) / 5.;
           result += 0.5 * density * areas[q] * X.row(q).dot(n.row(q));
         }
       return result;
@@ -128,7 +128,7 @@ namespace tanktread
   void
   TimeLevel::update_jumps(const State &state)
   {
-    coupling_.update_viscous_forces(state.fluid, forces(state));
+    coupling_.update_viscous_forces(state.fluid, coupling_.density(forces(state)));
   }
 
 
@@ -152,14 +152,14 @@ namespace tanktread
     if (inertia_ && tau > 0.)
       inertia_->add_residual(state.fluid, r.fluid);
     ExtendedForces extended;
-    ShellFields    F = forces(state);
-    coupling_.extend_whole(F, extended);
-    const ShellFields disturbance = coupling_.interpolate(state.fluid, extended), undisturbed = coupling_.undisturbed_velocity(flow_, shells);
-    for (std::size_t c = 0; c < F.size(); ++c)
-      F[c] += state.capsules[c].pressure_jump * shells[c]->volume_gradient();
-    coupling_.spread(-1., F, extended, r.fluid);
+    coupling_.extend_whole(coupling_.density(forces(state)), extended);
+    const ShellFields   disturbance = coupling_.interpolate(state.fluid, extended), undisturbed = coupling_.undisturbed_velocity(flow_, shells);
+    std::vector<double> pressure_jumps;
+    for (const CapsuleState &capsule : state.capsules)
+      pressure_jumps.push_back(capsule.pressure_jump);
+    coupling_.spread(-1., extended, pressure_jumps, r.fluid);
     r.shell_speed = shell_speed(r.fluid);
-    for (std::size_t c = 0; c < F.size(); ++c)
+    for (std::size_t c = 0; c < shells.size(); ++c)
       {
         const ControlPoints velocity = disturbance[c] + undisturbed[c];
         r.capsules[c].volume         = shells[c]->volume() - shells[c]->capsule().volume();
@@ -184,7 +184,7 @@ namespace tanktread
     std::vector<VertexSides *> sides;
     for (CapsuleState &capsule : state.capsules)
       sides.push_back(&capsule.sides);
-    coupling_.carry_pressure(forces(state), sides, state.fluid);
+    coupling_.carry_pressure(coupling_.density(forces(state)), sides, state.fluid);
   }
 
 
@@ -192,7 +192,7 @@ namespace tanktread
   TimeLevel::shell_velocity(const State &state)
   {
     ExtendedForces extended;
-    coupling_.extend_whole(forces(state), extended);
+    coupling_.extend_whole(coupling_.density(forces(state)), extended);
     ShellFields       result      = coupling_.interpolate(state.fluid, extended);
     const ShellFields undisturbed = coupling_.undisturbed_velocity(flow_, shells(state));
     for (std::size_t c = 0; c < result.size(); ++c)
@@ -247,14 +247,15 @@ namespace tanktread
   {
     ExtendedForces    extended;
     const ShellFields F = forces(state);
-    coupling_.extend_whole(F, extended);
+    const ShellFields g = coupling_.density(F);
+    coupling_.extend_whole(g, extended);
     const ShellFields disturbance = coupling_.interpolate(state.fluid, extended);
     double            result      = -inertial_power(state);
     for (std::size_t c = 0; c < F.size(); ++c)
       result += F[c].cwiseProduct(disturbance[c]).sum();
     if (!has_viscosities())
       return result;
-    result += undisturbed_load_ * state.fluid.block(velocity_block) + coupling_.undisturbed_work(F);
+    result += undisturbed_load_ * state.fluid.block(velocity_block) + coupling_.undisturbed_work(g);
     for (const auto &shell : shells(state))
       result += (liquids_.viscosity_ratio - 1.) * undisturbed_dissipation(flow_, *shell);
     return result;

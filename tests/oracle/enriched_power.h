@@ -171,7 +171,7 @@ namespace tanktread::oracle
       ShellFields all = F;
       for (unsigned int c = 0; c < F.size(); ++c)
         all[c] += flow.pressure_jumps[c] * scene_.v(c);
-      scene_.coupling.spread_plainly(all, load);
+      scene_.coupling.spread_plainly(scene_.coupling.density(all), load);
       plain_.dissipation = u.block(velocity_block) * product.block(velocity_block);
       plain_.force       = u.block(velocity_block) * load.block(velocity_block);
       u_.resize(space.velocity->full_size());

@@ -99,14 +99,14 @@ namespace tanktread::oracle
       for (unsigned int sweep = 0; sweep <= n_sweeps; ++sweep)
         {
           if (sweep > 0)
-            coupling.update_viscous_forces(result.fields, F);
+            coupling.update_viscous_forces(result.fields, coupling.density(F));
           FluidBlockVector rhs(result.fields);
           ExtendedForces   forces;
           rhs = 0.;
           if (scene.level().has_viscosities())
             rhs.block(velocity_block) -= scene.level().undisturbed_load();
-          coupling.extend_whole(F, forces);
-          coupling.spread(1., F, forces, rhs);
+          coupling.extend_whole(coupling.density(F), forces);
+          coupling.spread(1., forces, std::vector<double>(F.size(), 0.), rhs);
           const LinearReport report = solve_fgmres(matrix, preconditioner, result.fields, rhs, tolerance, 300);
           if (!report.converged)
             throw NumericalError("The flow of given forces did not converge in 300 iterations.");

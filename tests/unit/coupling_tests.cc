@@ -179,11 +179,11 @@ TEST(Coupling, SameOnAnyNumberOfRanks)
       together.space().reinit(load);
       alone.space().reinit(all_load);
       if (motion)
-        together.coupling.spread_with_motion({together.f}, {dx}, {g}, load);
+        together.coupling.spread_with_motion(together.coupling.density({together.f}), {dx}, {g}, load);
       else
         together.coupling.spread({together.f}, load);
       if (motion)
-        alone.coupling.spread_with_motion({alone.f}, {dx}, {g}, all_load);
+        alone.coupling.spread_with_motion({g}, {dx}, {g}, all_load);
       else
         alone.coupling.spread({alone.f}, all_load);
       EXPECT_NEAR(load.l2_norm(), all_load.l2_norm(), 1e-12 * all_load.l2_norm());

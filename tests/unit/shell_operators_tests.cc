@@ -92,7 +92,7 @@ TEST(ShellLayout, UnknownsOfAllCapsulesComeBackOnAllRanks)
       for (unsigned int c = 0; c < n_capsules; ++c)
         {
           EXPECT_EQ(unknowns[c].pressure_jump, 10. + c);
-          EXPECT_EQ(unknowns[c].force, force(c));
+          EXPECT_EQ(unknowns[c].density, force(c));
         }
     }
 }
@@ -209,15 +209,29 @@ TEST(ShellMotion, IsAsAccurateAsWanted)
     gradients.row(q) << 0.5, 0.3, 1., std::sin(0.1 * q), -0.5, 0.4, 0.2, std::cos(0.1 * q), 0.;
   SparseMatrix gamma;
   scene.coupling().gradient_matrix(0, gradients, gamma);
-  const ShellMotion exact(scene.capsule(), 0.1 * gamma, 0.);
+  const auto motion_of = [&](const double tau, const double accuracy) {
+    MotionTerms terms;
+    terms.gradient = tau * gamma;
+    terms.drift << 0.1, 0.2, 1., -0.3, 0.2, 0., 0.1, -0.1, -0.3;
+    terms.drift *= tau;
+    terms.volume_shift   = 0.01 * tau;
+    terms.volume_hessian = &scene.level().shells(scene.state)[0]->volume_hessian();
+    return ShellMotion(scene.capsule(), std::move(terms), accuracy);
+  };
+  const ShellMotion exact = motion_of(0.1, 0.);
   EXPECT_EQ(exact.n_terms(), 0u);
   const ControlPoints dx = exact.solve(f);
   EXPECT_LT((exact.times(dx) - f).norm(), 1e-12 * f.norm());
+  MotionTerms constant;
+  constant.drift << 0.1, 0.2, 1., -0.3, 0.2, 0., 0.1, -0.1, -0.3;
+  const ShellMotion in_constant_gradient(scene.capsule(), constant, 0.);
+  EXPECT_EQ(in_constant_gradient.n_terms(), 1u);
+  EXPECT_LT((in_constant_gradient.times(in_constant_gradient.solve(f)) - f).norm(), 1e-12 * f.norm());
 
   unsigned int n_terms = 1;
   for (const double accuracy : {1e-2, 1e-4, 1e-6})
     {
-      const ShellMotion motion(scene.capsule(), 0.1 * gamma, accuracy);
+      const ShellMotion motion = motion_of(0.1, accuracy);
       EXPECT_GT(motion.n_terms(), n_terms);
       n_terms            = motion.n_terms();
       const double error = (motion.solve(f) - dx).norm() / dx.norm();
@@ -226,5 +240,5 @@ TEST(ShellMotion, IsAsAccurateAsWanted)
       EXPECT_LT(error, accuracy);
       EXPECT_LT((motion.solve(2. * f + scene.x()) - 2. * motion.solve(f) - motion.solve(scene.x())).norm(), 1e-13 * dx.norm());
     }
-  EXPECT_EQ(ShellMotion(scene.capsule(), 5. * gamma, 1e-2).n_terms(), 0u); // the series diverges
+  EXPECT_EQ(motion_of(5., 1e-2).n_terms(), 0u); // the series diverges
 }

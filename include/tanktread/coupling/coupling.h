@@ -29,7 +29,8 @@ namespace tanktread
    * indicator pressure.
    *
    * Nodal fields are NP x 3 for each capsule and replicated on all ranks; what belongs to a point is on the rank of its fluid cell
-   * alone, so sums over points end in one sum over the ranks. Calls that take fluid vectors or velocity gradients are collective.
+   * alone, so sums over points end in one sum over the ranks. Calls that take fluid vectors or velocity gradients are collective. Forces are told by their
+   * densities g = M^{-1} f, but where `f` stands for them, which costs a solve with M.
    */
   class Coupling
   {
@@ -91,24 +92,24 @@ namespace tanktread
     std::vector<dealii::Point<3>>
     points(const ShellConfigurations &shells) const;
 
-    /** P f as the jumps need it, for several of the calls below; nothing with the plain interface. Collective. */
+    /** Forces of densities g, for several of the calls below. Collective. */
     void
-    extend(const ShellFields &f, ExtendedForces &forces) const;
+    extend(const ShellFields &g, ExtendedForces &forces) const;
 
     /**
-     * Extended forces of the shells in the whole flow: with what another viscosity inside and the undisturbed flow contribute, which is not linear in f. See
+     * Extended forces of the shells in the whole flow: with what another viscosity inside and the undisturbed flow contribute, which is not linear in g. See
      * JumpEnrichment. Collective.
      */
     void
-    extend_whole(const ShellFields &f, ExtendedForces &forces) const;
+    extend_whole(const ShellFields &g, ExtendedForces &forces) const;
 
-    /** Makes that contribution the one of the flow `fields` with nodal forces f. Nothing with one viscosity or the plain interface. Collective. */
+    /** Makes that contribution the one of the flow `fields` with forces of densities g. Nothing with one viscosity or the plain interface. Collective. */
     void
-    update_viscous_forces(const FluidBlockVector &fields, const ShellFields &f);
+    update_viscous_forces(const FluidBlockVector &fields, const ShellFields &g);
 
     /** What psi adds to 2 ((mu - 1) eps(u_inf), eps(u_h)). Collective. */
     double
-    undisturbed_work(const ShellFields &f) const;
+    undisturbed_work(const ShellFields &g) const;
 
     /** M J fields: S^T W Phi u, and what the jumps add. */
     ShellFields
@@ -144,32 +145,31 @@ namespace tanktread
     density(const ShellFields &f) const;
 
     /**
-     * Adds to the pressure of `fields` what it jumps where the shells with nodal forces f have passed a vertex of the mesh since `sides` (of each shell), which
+     * Adds to the pressure of `fields` what it jumps where the shells with forces of densities g have passed a vertex of the mesh since `sides` (of each shell), which
      * become the sides at move(). Nothing if `sides` are empty, before
      * the first move() on a mesh, and with the plain interface. Collective.
      */
     void
-    carry_pressure(const ShellFields &f, const std::vector<VertexSides *> &sides, FluidBlockVector &fields) const;
+    carry_pressure(const ShellFields &g, const std::vector<VertexSides *> &sides, FluidBlockVector &fields) const;
 
-    /** load += R f without what the jumps add. */
+    /** load += R M g without what the jumps add. */
     void
-    spread_plainly(const ShellFields &f, FluidBlockVector &load) const;
+    spread_plainly(const ShellFields &g, FluidBlockVector &load) const;
 
     /** load += R f. */
     void
     spread(const ShellFields &f, FluidBlockVector &load) const;
 
-    /** load += factor R f, where f and `forces` may differ by a multiple of v. */
+    /** load += factor R (f + pi v), f being extended and pi of each shell. */
     void
-    spread(double factor, const ShellFields &f, const ExtendedForces &forces, FluidBlockVector &load) const;
+    spread(double factor, const ExtendedForces &f, const std::vector<double> &pressure_jumps, FluidBlockVector &load) const;
 
     /**
-     * load += R f + sum_q w_q (S dx)_q . grad Phi(X_q) (S g)_q, where knows_motion() only, the second term being the change of R f0 when the shells move by dx.
-     *
-     * @param g = density(f0).
+     * load += R M g + sum_q w_q (S dx)_q . grad Phi(X_q) (S g0)_q, where knows_motion() only, the second term being the change of R M g0 when the shells move
+     * by dx.
      */
     void
-    spread_with_motion(const ShellFields &f, const ShellFields &dx, const ShellFields &g, FluidBlockVector &load) const;
+    spread_with_motion(const ShellFields &g, const ShellFields &dx, const ShellFields &g0, FluidBlockVector &load) const;
 
     /**
      * S^T W grad u S of shell c, 3 NP x 3 NP: M^{-1} times it is the change of J u when the shell moves. Collective.
@@ -188,9 +188,9 @@ namespace tanktread
     ShellFields
     sum_moments(const std::vector<double> &values) const;
 
-    /** Point forces of nodal forces f, of all shells. */
+    /** Point forces w S g of all shells. */
     void
-    set_point_forces(const ShellFields &f, std::vector<double> &forces) const;
+    set_point_forces(const ShellFields &g, std::vector<double> &forces) const;
 
     const Capsule                      &capsule_;
     const Interface                     interface_;
@@ -204,7 +204,6 @@ namespace tanktread
     // Memory of the calls, kept between them.
     std::vector<dealii::Point<3>> points_;
     std::vector<double>           normal_forces_; // of the density m of each shell, at the points of this rank
-    mutable ControlPoints         density_;
     mutable std::vector<double>   values_, moments_, further_values_, sums_;
   };
 

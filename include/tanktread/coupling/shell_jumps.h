@@ -14,11 +14,12 @@
 
 namespace tanktread
 {
-  /** Forces of all shells as their jumps need them. */
+  /** Nodal forces f of all shells where the fluid feels them; without a jump of the pressure, P f, if there are jumps. */
   struct ExtendedForces
   {
     std::vector<double>      at_points;     // force times area at the points of all shells on this rank, 3 numbers each
-    std::vector<VertexArray> at_vertices;   // f_t and f_n of each shell
+    std::vector<double>      normal_parts;  // multiples of v that P f lacks, for each shell
+    std::vector<VertexArray> at_vertices;   // f_t and f_n of each shell; only if there are jumps
     bool                     whole = false; // with all that does not depend on the forces, see JumpEnrichment::complete()
   };
 

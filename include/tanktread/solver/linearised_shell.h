@@ -97,7 +97,7 @@ namespace tanktread
                     const CapsuleState                              &state,
                     const std::shared_ptr<const ShellConfiguration> &shell,
                     const ControlPoints                             &velocity,
-                    VelocityGradients                                velocity_gradient,
+                    const VelocityGradients                         &velocity_gradient,
                     const Linearisation                             &choice);
 
     /** dx for r_x = 0, r_V = 0 and given velocity moments S^T W Phi du; zero if tau = 0. */
@@ -129,6 +129,24 @@ namespace tanktread
     volume_gradient() const
     {
       return shell_->volume_gradient();
+    }
+    /** m = M^{-1} v. */
+    const ControlPoints &
+    normal_field() const
+    {
+      return shell_->normal_field();
+    }
+    /** M g. */
+    ControlPoints
+    force(const ControlPoints &g) const
+    {
+      return capsule_.mass() * g;
+    }
+    /** M^{-1} f. */
+    ControlPoints
+    density(const ControlPoints &f) const
+    {
+      return capsule_.density(f);
     }
     /** g = M^{-1}(F + pi v), control points of the density whose motion D_R describes; zero with frozen points. */
     const ControlPoints &
@@ -172,7 +190,7 @@ namespace tanktread
                      const State                    &state,
                      const ShellConfigurations      &shells,
                      const ShellFields              &velocities,
-                     std::vector<VelocityGradients>  velocity_gradients,
+                     const std::vector<VelocityGradients> &velocity_gradients,
                      const Linearisation            &choice,
                      ImplicitShells                 &implicit_shells);
 

@@ -78,11 +78,11 @@ namespace tanktread
     mutable FluidBlockVector    loads_;
   };
 
-  /** The nodal forces of all unknowns, with those of the pressure jumps, dG + v dpi, or without. */
+  /** The densities of all unknowns, with those of the pressure jumps, dg + m dpi, or without. */
   ShellFields
-  forces(const std::vector<ShellUnknowns> &unknowns);
+  densities(const std::vector<ShellUnknowns> &unknowns);
   ShellFields
-  forces_with_pressure(const std::vector<ShellUnknowns> &unknowns, const LinearisedShells &shells);
+  densities_with_pressure(const std::vector<ShellUnknowns> &unknowns, const LinearisedShells &shells);
 } // namespace tanktread
 
 #endif

@@ -17,11 +17,11 @@ namespace tanktread
   /** Block of the monolithic vectors that holds the shells' unknowns. */
   constexpr unsigned int shell_block = pressure_block + 1;
 
-  /** Unknowns of one capsule in that block: dpi and the nodal forces dG, flattened. */
+  /** Unknowns of one capsule in that block: dpi and the density dg = M^{-1} dG of the nodal forces, flattened. */
   struct ShellUnknowns
   {
     double        pressure_jump = 0.;
-    ControlPoints force;
+    ControlPoints density;
   };
 
   /**
@@ -70,9 +70,9 @@ namespace tanktread
     std::vector<ShellUnknowns>
     unknowns(const FluidBlockVector &vector) const;
 
-    /** Stores those of capsule c on the rank that owns it; does nothing elsewhere. */
+    /** Stores unknowns of capsule c, or what belongs to the rows of the flux and of the forces, on the rank that owns it; does nothing elsewhere. */
     void
-    set(FluidBlockVector &vector, unsigned int c, double pressure_jump, const ControlPoints &force) const;
+    set(FluidBlockVector &vector, unsigned int c, double pressure_jump, const ControlPoints &density) const;
 
   private:
     /** First capsule of a rank. */

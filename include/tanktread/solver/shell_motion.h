@@ -11,14 +11,22 @@
 
 namespace tanktread
 {
+  /** What the matrix of ShellMotion is made of. */
+  struct MotionTerms
+  {
+    Eigen::Matrix3d     drift = Eigen::Matrix3d::Zero(); // tau G, G a constant part of the velocity gradient
+    SparseMatrix        gradient;                        // tau S^T W (grad u - G) S, in the pattern of AssemblyPattern::block_matrix(), or empty
+    double              volume_shift = 0.;               // sigma
+    const SparseMatrix *volume_hessian = nullptr;        // H_V, in the same pattern; kept by pointer; not needed with sigma = 0
+  };
+
   /**
-   * Inverse of A = M - N, where N is small against M for short time steps: a fixed number of terms of
+   * Inverse of A = M D - N, D = 1 - tau G, N = tau S^T W (grad u - G) S + sigma H_V, where N is small against M for short time steps: a fixed number of terms of
    *
-   *     A^{-1} = sum_k (M^{-1} N)^k M^{-1},
+   *     A^{-1} = sum_k (D^{-1} M^{-1} N)^k D^{-1} M^{-1},
    *
-   * or LU factors of A where the series converges too slowly to be worth it. A term costs about as much as a solve with the factors, to make these as much as
-   * 100 terms or more; a
-   * linearisation needs some 12 solves.
+   * one where the gradient is constant, or LU factors of A where the series converges too slowly to be worth it. A term costs about as much as a solve with the
+   * factors, to make these as much as 100 terms or more; a linearisation needs some 12 solves.
    */
   class ShellMotion
   {
@@ -27,11 +35,11 @@ namespace tanktread
     static constexpr unsigned int max_terms = 12;
 
     /**
-     * M is the mass matrix of `capsule`, kept by reference; `N` has the pattern of AssemblyPattern::block_matrix(). `accuracy`: error wanted, relative to the
+     * M is the mass matrix of `capsule`, kept by reference. `accuracy`: error wanted, relative to the
      * solution and measured on a rough field.
      * Throws NumericalError when A has to be factorised and is singular.
      */
-    ShellMotion(const Capsule &capsule, SparseMatrix N, double accuracy);
+    ShellMotion(const Capsule &capsule, MotionTerms terms, double accuracy);
 
     /** A^{-1} moments, a linear map. */
     ControlPoints
@@ -53,8 +61,13 @@ namespace tanktread
     unsigned int
     terms_needed(double accuracy) const;
 
+    /** N field. */
+    ControlPoints
+    remainder(const ControlPoints &field) const;
+
     const Capsule                      *capsule_;
-    SparseMatrix                        N_;
+    MotionTerms                         terms_;
+    Eigen::Matrix3d                     inverse_drift_; // D^{-T}, for rows
     unsigned int                        n_terms_;
     std::unique_ptr<BlockFactorisation> factors_;
   };
