@@ -82,7 +82,7 @@ namespace tanktread
 
 
     /** laplace and self. */
-    void
+    TANKTREAD_CLONES void
     set_velocity_forms(const NodeDistances &nodes, const PartialCellMatrices &in, const NodeAmplitudes &q, const double viscosity_ratio, CutCellForms &forms)
     {
       const PartialCellMatrices &whole     = whole_cell_matrices();
@@ -119,7 +119,7 @@ namespace tanktread
 
 
     /** pressure, divergence and self_mixed. */
-    void
+    TANKTREAD_CLONES void
     set_pressure_forms(const NodeDistances &nodes, const PartialCellMatrices &in, const NodeAmplitudes &q, CutCellForms &forms)
     {
       const PartialCellMatrices &whole = whole_cell_matrices();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: element matrices of the part of a cube that lies inside the shell.
 
+#include <tanktread/base/target_clones.h>
 #include <tanktread/fluid/cut_cell.h>
 #include <tanktread/fluid/quadratic_element.h>
 
@@ -60,7 +61,7 @@ namespace tanktread
      * result[p1][p2][p3] += sum over Gauss points of weight t1[g1][p1] t2[g2][p2] t3[g3][p3]; one direction after the other.
      */
     template <int n>
-    void
+    inline __attribute__((always_inline)) void
     add_products(const CellWeights &weights,
                  const double (&t1)[n_gauss][n],
                  const double (&t2)[n_gauss][n],
@@ -86,10 +87,9 @@ namespace tanktread
     }
 
 
-    PartialCellMatrices
-    matrices(const CellWeights &weights)
+    TANKTREAD_CLONES void
+    set_matrices(const CellWeights &weights, PartialCellMatrices &result)
     {
-      PartialCellMatrices result;
       result.volume           = std::accumulate(weights.begin(), weights.end(), 0.);
       double laplace[6][6][6] = {};
       add_products(weights, tables.dd, tables.vv, tables.vv, laplace);
@@ -106,11 +106,19 @@ namespace tanktread
             for (int a = 0; a < 27; ++a)
               result.divergence[j][27 * c + a] = divergence[3 * (j / 4) + a / 9][3 * (j / 2 % 2) + a / 3 % 3][3 * (j % 2) + a % 3];
         }
+    }
+
+
+    PartialCellMatrices
+    matrices(const CellWeights &weights)
+    {
+      PartialCellMatrices result;
+      set_matrices(weights, result);
       return result;
     }
 
 
-    void
+    TANKTREAD_CLONES void
     set_gradient_products(const CellWeights &weights, GradientProducts &result)
     {
       for (int d = 0; d < 3; ++d)
