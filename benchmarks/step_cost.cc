@@ -170,7 +170,9 @@ namespace
                                            implicit);
     });
     const MonolithicOperator          matrix(fluid.stokes(), *linear, layout);
-    const MonolithicPreconditioner    preconditioner(fluid.preconditioner(), *linear, layout, capsule.volume());
+    KrylovBasis                       basis;
+    const PressureJumpResponse        jumps({fluid.stokes()}, fluid.preconditioner(), scene.coupling(), capsule.volume(), basis);
+    const MonolithicPreconditioner    preconditioner(fluid.preconditioner(), *linear, layout, jumps);
     const FluidBlockVector            rhs = loads(fluid, *linear, layout, shell.force(deformed(capsule)));
     LinearReport                      report;
     const auto                        solve_once = [&] {
@@ -206,7 +208,7 @@ namespace
     Entries           result;
     double            sum    = 0.;
     const std::string solver = "Linear solver";
-    for (const char *name : {"- Stokes operator", "- V-cycle", "- pressure mass and gradient", "- coupling", "- shell"})
+    for (const char *name : {"- Stokes operator", "- V-cycle", "- pressure mass and gradient", "- coupling", "- shell", "- pressure jumps"})
       result.push_back(share(std::string(name).substr(2), timings.seconds(name)));
     result.push_back(share("orthogonalisation", timings.rest(solver)));
     for (const char *name : {"Shell tangent and factorisation", "Residual"})

@@ -86,12 +86,12 @@ namespace tanktread
   MonolithicPreconditioner::MonolithicPreconditioner(const StokesPreconditioner &stokes,
                                                      const LinearisedShells     &shells,
                                                      const ShellLayout          &layout,
-                                                     const double                volume,
+                                                     const PressureJumpResponse &pressure_jumps,
                                                      Timings *const              timings)
     : stokes_(stokes)
     , shells_(shells)
     , layout_(layout)
-    , volume_(volume)
+    , pressure_jumps_(pressure_jumps)
     , timings_(timings)
   {
     stokes.space().reinit(loads_);
@@ -103,11 +103,12 @@ namespace tanktread
   {
     std::vector<ShellUnknowns> z = layout_.unknowns(src);
     {
-      const Timings::Scope scope(timings_, "- shell");
+      const Timings::Scope      scope(timings_, "- shell");
+      const std::vector<double> jumps = pressure_jumps_.pressure_jumps(src.block(pressure_block), pressure_jumps(z));
       for (unsigned int c = 0; c < shells_.size(); ++c)
         {
-          z[c].pressure_jump /= -volume_;
-          z[c].density = shells_[c].density(z[c].density); // what came were forces
+          z[c].pressure_jump = jumps[c];
+          z[c].density       = shells_[c].density(z[c].density); // what came were forces
         }
     }
     for (unsigned int b = 0; b <= pressure_block; ++b)

@@ -102,10 +102,20 @@ namespace tanktread
   LinearReport
   NewtonSolver::linear_solve(const Residual &r, const LinearisedShells &shells, const double tolerance, State &increment)
   {
-    const Timings::Scope           scope(timings_, "Linear solver");
-    const Fluid                   &fluid = level_.fluid();
-    const MonolithicOperator       matrix(fluid.stokes(), shells, layout_, &timings_, shells.tau() > 0. ? level_.inertia() : nullptr);
-    const MonolithicPreconditioner preconditioner(fluid.preconditioner(), shells, layout_, volume_ / level_.liquids().mean_viscosity(), &timings_);
+    const Timings::Scope     scope(timings_, "Linear solver");
+    const Fluid             &fluid   = level_.fluid();
+    const Inertia *const     inertia = shells.tau() > 0. ? level_.inertia() : nullptr;
+    const MonolithicOperator matrix(fluid.stokes(), shells, layout_, &timings_, inertia);
+    if (!pressure_jumps_)
+      {
+        const Timings::Scope jump_scope(timings_, "- pressure jumps");
+        pressure_jumps_.emplace(FluidOperator{fluid.stokes(), inertia},
+                                fluid.preconditioner(),
+                                level_.coupling(),
+                                volume_ / level_.liquids().mean_viscosity(),
+                                krylov_basis_);
+      }
+    const MonolithicPreconditioner preconditioner(fluid.preconditioner(), shells, layout_, *pressure_jumps_, &timings_);
 
     ShellFields dx0, zeros;
     for (unsigned int c = 0; c < shells.size(); ++c)
@@ -323,6 +333,7 @@ namespace tanktread
   {
     NewtonReport report;
     State        trial = state;
+    pressure_jumps_.reset();
     level_.begin(step);
     try
       {
@@ -354,6 +365,7 @@ namespace tanktread
   {
     constexpr unsigned int n_sweeps = 3; // for the viscous part of the jumps
     level_.begin_at_rest(time);
+    pressure_jumps_.reset();
     level_.set_forces(state);
     level_.set_viscosity(state);
     unsigned int iterations = solve_with_fixed_jumps(state, Points::follow);

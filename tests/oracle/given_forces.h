@@ -95,7 +95,9 @@ namespace tanktread::oracle
       const LinearisedShells         linear = at_rest(implicit_shells);
       Flow                           result{layout.vector(fluid.space()), {}, {}, 0};
       const MonolithicOperator       matrix(fluid.stokes(), linear, layout);
-      const MonolithicPreconditioner preconditioner(fluid.preconditioner(), linear, layout, shells[0]->volume() / scene.level().liquids().mean_viscosity());
+      KrylovBasis                    basis;
+      const PressureJumpResponse     jumps({fluid.stokes()}, fluid.preconditioner(), coupling, shells[0]->volume() / scene.level().liquids().mean_viscosity(), basis);
+      const MonolithicPreconditioner preconditioner(fluid.preconditioner(), linear, layout, jumps);
       for (unsigned int sweep = 0; sweep <= n_sweeps; ++sweep)
         {
           if (sweep > 0)

@@ -62,7 +62,9 @@ TEST(ConstantPressureJump, DrivesNoFlow)
   FluidBlockVector       rhs = layout.vector(scene.fluid().space()), u(rhs);
   scene.coupling().spread({state.force}, rhs);
   const MonolithicOperator       matrix(scene.fluid().stokes(), shells, layout);
-  const MonolithicPreconditioner preconditioner(scene.fluid().preconditioner(), shells, layout, scene.capsule().volume());
+  KrylovBasis                    basis;
+  const PressureJumpResponse     jumps({scene.fluid().stokes()}, scene.fluid().preconditioner(), scene.coupling(), scene.capsule().volume(), basis);
+  const MonolithicPreconditioner preconditioner(scene.fluid().preconditioner(), shells, layout, jumps);
   const LinearReport             report = solve_fgmres(matrix, preconditioner, u, rhs, 1e-10, 300);
   ASSERT_TRUE(report.converged);
   const double largest = largest_velocity(u);

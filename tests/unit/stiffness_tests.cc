@@ -85,7 +85,9 @@ namespace
                                   {tau, scene.level().finest_cell(), 1e-8, PointDerivatives::frozen, tangent, scene.level().flow()},
                                   implicit);
     const MonolithicOperator       matrix(scene.fluid().stokes(), linear, layout);
-    const MonolithicPreconditioner preconditioner(scene.fluid().preconditioner(), linear, layout, scene.capsule().volume());
+    KrylovBasis                    basis;
+    const PressureJumpResponse     jumps({scene.fluid().stokes()}, scene.fluid().preconditioner(), scene.coupling(), scene.capsule().volume(), basis);
+    const MonolithicPreconditioner preconditioner(scene.fluid().preconditioner(), linear, layout, jumps);
     const ControlPoints            other    = scene.x() * Eigen::Vector3d(1.1, 0.95, 0.96).asDiagonal();
     const FluidBlockVector         rhs      = loads(scene, layout, linear, serial.force(other));
     FluidBlockVector               solution = layout.vector(scene.fluid().space());

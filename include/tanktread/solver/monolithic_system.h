@@ -8,6 +8,7 @@
 #include <tanktread/fluid/fluid.h>
 #include <tanktread/fluid/inertia.h>
 #include <tanktread/solver/linearised_shell.h>
+#include <tanktread/solver/pressure_jump_response.h>
 #include <tanktread/solver/shell_layout.h>
 
 namespace tanktread
@@ -52,18 +53,17 @@ namespace tanktread
   };
 
   /**
-   * Block-triangular: the shells' forces (their rows are already close to the identity) and the pressures first, with the mass matrix for the Schur complement
-   * and the
-   * capsule's volume, over the mean viscosity, for that of the pressure jump; then one multigrid V-cycle for the velocities.
+   * Block-triangular: the shells' forces (their rows are already close to the identity) and the pressure jumps first, then the pressures and
+   * one multigrid V-cycle for the velocities.
    */
   class MonolithicPreconditioner
   {
   public:
-    /** @param volume of a capsule over the mean of the viscosities inside and outside. @param timings where to add what the parts take, or null. */
+    /** All are kept by reference. @param timings where to add what the parts take, or null. */
     MonolithicPreconditioner(const StokesPreconditioner &stokes,
                              const LinearisedShells     &shells,
                              const ShellLayout          &layout,
-                             double                      volume,
+                             const PressureJumpResponse &pressure_jumps,
                              Timings                    *timings = nullptr);
 
     void
@@ -73,7 +73,7 @@ namespace tanktread
     const StokesPreconditioner &stokes_;
     const LinearisedShells     &shells_;
     const ShellLayout          &layout_;
-    double                      volume_;
+    const PressureJumpResponse &pressure_jumps_;
     Timings *const              timings_;
     mutable FluidBlockVector    loads_;
   };

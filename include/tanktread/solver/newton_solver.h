@@ -11,6 +11,7 @@
 #include <tanktread/solver/time_level.h>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -172,6 +173,8 @@ namespace tanktread
     const double            volume_; // V0 of a capsule
     ImplicitShells          implicit_shells_;
     KrylovBasis             krylov_basis_;
+
+    std::optional<PressureJumpResponse> pressure_jumps_; // of the present step
   };
 } // namespace tanktread
 

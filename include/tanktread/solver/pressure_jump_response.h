@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: what unit pressure jumps at the shells do to the liquid, for the preconditioner.
+
+#ifndef tanktread_solver_pressure_jump_response_h
+#define tanktread_solver_pressure_jump_response_h
+
+#include <tanktread/coupling/coupling.h>
+#include <tanktread/fluid/fluid.h>
+#include <tanktread/fluid/inertia.h>
+#include <tanktread/fluid/krylov_basis.h>
+
+#include <vector>
+
+namespace tanktread
+{
+  /** The Stokes operator with the derivative of inertia, if there is any. */
+  struct FluidOperator
+  {
+    const StokesOperator &stokes;
+    const Inertia        *inertia = nullptr; // linearised
+
+    void
+    vmult(FluidBlockVector &dst, const FluidBlockVector &src) const
+    {
+      stokes.vmult(dst, src);
+      if (inertia != nullptr)
+        inertia->add_derivative(src, dst);
+    }
+  };
+
+  /**
+   * A pressure jump pi is the coefficient of a shell's indicator function chi among the pressures, which the continuous ones represent but for the cells that the
+   * shell cuts. The Schur complement of
+   * (p, pi) is therefore about that of p and, for the part of chi that is left over, s = |chi - e|^2/mu with the best approximation e, far less than |chi|^2/mu, the
+   * volume over the viscosity:
+   *
+   *     pi = -(r_pi - e . r_p)/s.
+   *
+   * For e and s the Stokes equations are solved with the loads R v of all shells, to a tenth: -e is the pressure, s the flux through the shell and what is left of
+   * the divergence. Loads of several shells are told apart by the nearest of their centres.
+   */
+  class PressureJumpResponse
+  {
+  public:
+    /**
+     * @param coupling has its points where the shells are. @param volume of a capsule over the mean viscosity, in place of s where that is not found. @param
+     * basis memory that may be used. Collective.
+     */
+    PressureJumpResponse(const FluidOperator &fluid, const StokesPreconditioner &preconditioner, const Coupling &coupling, double volume, KrylovBasis &basis);
+
+    /** pi of all capsules for the rows r_p of the pressures and r_pi of the fluxes. Collective. */
+    std::vector<double>
+    pressure_jumps(const FluidVector &r_p, std::vector<double> r_pi) const;
+
+    /** s of all capsules. */
+    const std::vector<double> &
+    schur_complements() const
+    {
+      return s_;
+    }
+
+  private:
+    /** The capsule that each pressure of this rank belongs to, if there are several. */
+    void
+    assign_nodes(const TaylorHoodSpace &space, const Coupling &coupling);
+    /** Sum of products of pressures, for each capsule. */
+    std::vector<double>
+    products(const FluidVector &p, const FluidVector &q) const;
+
+    MPI_Comm                  communicator_;
+    FluidVector               e_; // of all capsules together
+    std::vector<double>       s_;
+    std::vector<unsigned int> capsule_of_node_;
+  };
+} // namespace tanktread
+
+#endif

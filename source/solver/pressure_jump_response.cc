@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: what unit pressure jumps at the shells do to the liquid, for the preconditioner.
+
+#include <tanktread/fluid/linear_solver.h>
+#include <tanktread/solver/pressure_jump_response.h>
+
+#include <cmath>
+#include <limits>
+
+namespace tanktread
+{
+  namespace
+  {
+    /** More accurate ones save no iterations of the solver. */
+    constexpr double       tolerance      = 0.1;
+    constexpr unsigned int max_iterations = 10;
+  } // namespace
+
+
+  PressureJumpResponse::PressureJumpResponse(const FluidOperator        &fluid,
+                                             const StokesPreconditioner &preconditioner,
+                                             const Coupling             &coupling,
+                                             const double                volume,
+                                             KrylovBasis                &basis)
+    : communicator_(preconditioner.space().mesh.communicator())
+    , s_(coupling.n_capsules(), 0.)
+  {
+    const TaylorHoodSpace &space = preconditioner.space();
+    FluidBlockVector       load, response, product;
+    ShellFields            normal_fields;
+    for (FluidBlockVector *vector : {&load, &response, &product})
+      space.reinit(*vector);
+    for (unsigned int c = 0; c < coupling.n_capsules(); ++c)
+      normal_fields.push_back(coupling.transfer(c).shell().normal_field());
+    assign_nodes(space, coupling);
+    coupling.spread_plainly(normal_fields, load);
+    solve_fgmres(fluid, preconditioner, response, load, tolerance, max_iterations, basis);
+
+    // s = u . (R v + B^T p), the energy of what a pressure jump drives, is positive even for a pressure that is not accurate.
+    fluid.vmult(product, response);
+    const ShellFields         moments    = coupling.velocity_moments(response);
+    const std::vector<double> divergence = products(response.block(pressure_block), product.block(pressure_block));
+    e_                                   = response.block(pressure_block);
+    e_ *= -1.;
+    for (std::size_t c = 0; c < s_.size(); ++c)
+      {
+        s_[c] = normal_fields[c].cwiseProduct(moments[c]).sum() - divergence[c];
+        if (!(s_[c] > 1e-4 * volume && s_[c] < volume))
+          s_[c] = volume;
+      }
+  }
+
+
+  void
+  PressureJumpResponse::assign_nodes(const TaylorHoodSpace &space, const Coupling &coupling)
+  {
+    if (coupling.n_capsules() == 1)
+      return;
+    const NodeSpace              &p       = *space.pressure;
+    const std::vector<double>     corners = lower_corners(space);
+    const Box                    &box     = space.mesh.box();
+    std::vector<dealii::Point<3>> centres;
+    for (unsigned int c = 0; c < coupling.n_capsules(); ++c)
+      {
+        const Eigen::RowVector3d mean = coupling.transfer(c).shell().x().colwise().mean();
+        centres.emplace_back(mean[0], mean[1], mean[2]);
+      }
+    const auto nearest = [&](const dealii::Point<3> &x) {
+      unsigned int result = 0;
+      double       least  = std::numeric_limits<double>::infinity();
+      for (unsigned int c = 0; c < centres.size(); ++c)
+        if (const double square = box.wrapped(dealii::Point<3>(x - centres[c])).square(); square < least)
+          {
+            least  = square;
+            result = c;
+          }
+      return result;
+    };
+    capsule_of_node_.assign(p.n_owned(), 0);
+    for (unsigned int cell = 0; cell < p.n_cells(); ++cell)
+      for (unsigned int j = 0; j < 8; ++j)
+        if (const unsigned int node = p.cell_nodes(cell)[j]; p.is_free(node) && node < p.n_owned())
+          {
+            dealii::Point<3> x(corners[3 * std::size_t(cell)], corners[3 * std::size_t(cell) + 1], corners[3 * std::size_t(cell) + 2]);
+            for (unsigned int d = 0; d < 3; ++d)
+              x[d] += p.cell_sizes()[cell] * ((j >> d) & 1);
+            capsule_of_node_[node] = nearest(x);
+          }
+  }
+
+
+  std::vector<double>
+  PressureJumpResponse::products(const FluidVector &p, const FluidVector &q) const
+  {
+    std::vector<double> result(s_.size(), 0.);
+    const double *const p_i = p.begin(), *const q_i = q.begin();
+    for (std::size_t i = 0; i < p.locally_owned_size(); ++i)
+      result[capsule_of_node_.empty() ? 0 : capsule_of_node_[i]] += p_i[i] * q_i[i];
+    MPI_Allreduce(MPI_IN_PLACE, result.data(), int(result.size()), MPI_DOUBLE, MPI_SUM, communicator_);
+    return result;
+  }
+
+
+  std::vector<double>
+  PressureJumpResponse::pressure_jumps(const FluidVector &r_p, std::vector<double> r_pi) const
+  {
+    const std::vector<double> known = products(e_, r_p);
+    for (std::size_t c = 0; c < s_.size(); ++c)
+      r_pi[c] = -(r_pi[c] - known[c]) / s_[c];
+    return r_pi;
+  }
+} // namespace tanktread
