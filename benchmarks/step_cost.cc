@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: what solves and time steps cost, mesh by mesh.
 //
-// Usage: mpirun -np N step_cost [--cells 32,64,128] [--dt 0.1] [--ml | --steps]. Markdown tables on the standard output, progress on the standard error. A neo-Hookean
+// Usage: mpirun -np N step_cost [--cells 32,64,128] [--dt 0.1] [--ml | --steps [--viscosity-ratio 1]]. Markdown tables on the standard output, progress on the standard error. A neo-Hookean
 // sphere with
 // bending (G = 0.2, khat = 0.04) in shear, box 10 a, h = 10 a/cells, shell of level log2(cells/8). With --ml the Stokes solves alone, compared with assembled
 // matrices and
@@ -35,6 +35,7 @@ namespace
     double                    dt    = 0.1;
     bool                      ml    = false;
     bool                      steps = false; // and nothing else, with the enriched interface
+    double                    ratio = 1.;    // of the viscosities, for these
   };
 
 
@@ -284,7 +285,7 @@ namespace
     };
     if (options.steps)
       {
-        steps(enriched, "", result.steps);
+        steps(with_viscosity_ratio(enriched, options.ratio), "", result.steps);
         return result;
       }
     result.solves = measure_implicit_solves(scene, "deformed", deformed(capsule), Tangent::positive, dt);
@@ -332,10 +333,13 @@ namespace
           options.cells = read_cells(value);
         else if (name == "--dt")
           options.dt = std::atof(value.c_str());
+        else if (name == "--viscosity-ratio")
+          options.ratio = std::atof(value.c_str());
         else
           options.cells.clear();
-        if (options.cells.empty() || !(options.dt > 0.))
-          throw InputError("step_cost: got '" + name + " " + value + "'; allowed: --cells 32,64,128 (at least 8 each), --dt 0.1, --ml and --steps");
+        if (options.cells.empty() || !(options.dt > 0.) || !(options.ratio > 0.))
+          throw InputError("step_cost: got '" + name + " " + value +
+                           "'; allowed: --cells 32,64,128 (at least 8 each), --dt 0.1, --ml, --steps and --viscosity-ratio 1");
       }
     return options;
   }

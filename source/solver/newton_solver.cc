@@ -187,24 +187,61 @@ namespace tanktread
   }
 
 
+  bool
+  NewtonSolver::has_to_follow(const ShellFields &x, const Progress &progress)
+  {
+    if (trial_points() == Points::follow)
+      return false;
+    if (level_.has_viscosities() && !progress.settled)
+      return true;
+    State shapes; // no flow is needed to tell
+    shapes.capsules.resize(x.size());
+    for (std::size_t c = 0; c < x.size(); ++c)
+      shapes.capsules[c].x = x[c];
+    return level_.coupling().distance(level_.shells(shapes)) > distance_allowed(progress);
+  }
+
+
+  bool
+  NewtonSolver::accept_following(State &state, Residual &r, const State &increment, const TimeStep &step, Progress &progress)
+  {
+    const double before = norm(r, step.tau);
+    try
+      {
+        State trial = state;
+        add(trial, 1., increment);
+        follow_shells(trial, progress);
+        Residual     r_trial = level_.residual(trial, step, trial_points());
+        const double after   = norm(r_trial, step.tau);
+        if (after < (1. - 1e-4) * before || is_solved(r_trial, after))
+          {
+            state = std::move(trial);
+            r     = std::move(r_trial);
+            return true;
+          }
+      }
+    catch (const NumericalError &)
+      {
+        // the trial shell is degenerate or out of the box
+      }
+    level_.set_viscosity(state);
+    level_.move_points(state);
+    if (level_.has_viscosities() && !progress.settled)
+      level_.update_jumps(state);
+    return false;
+  }
+
+
   double
   NewtonSolver::line_search(State &state, Residual &r, const State &increment, const TimeStep &step, Progress &progress)
   {
-    // Points that have to follow afterwards may do so at once: where the residual falls even so, it need not be computed twice.
-    if (trial_points() == Points::stay && !level_.has_viscosities())
-      {
-        State shapes; // no flow is needed to tell
-        shapes.capsules = state.capsules;
-        for (std::size_t c = 0; c < shapes.capsules.size(); ++c)
-          shapes.capsules[c].x += increment.capsules[c].x;
-        if (level_.coupling().distance(level_.shells(shapes)) > distance_allowed(progress))
-          {
-            ++progress.n_moves;
-            if (accept_if_better(state, r, increment, step, 1., Points::follow))
-              return 1.;
-            level_.move_points(state);
-          }
-      }
+    // What has to follow afterwards may do so at once: where the residual falls even so, it need not be computed twice.
+    ShellFields x = positions(state);
+    for (std::size_t c = 0; c < x.size(); ++c)
+      x[c] += increment.capsules[c].x;
+    progress.followed = has_to_follow(x, progress) && accept_following(state, r, increment, step, progress);
+    if (progress.followed)
+      return 1.;
     for (double length = 1.; length > 0.05; length *= 0.5)
       if (accept_if_better(state, r, increment, step, length, trial_points()))
         return length;
@@ -255,6 +292,7 @@ namespace tanktread
   bool
   NewtonSolver::follow_shells(State &state, Progress &progress)
   {
+    const Timings::Scope scope(timings_, "Residual");
     const double tolerance = distance_allowed(progress);
     const bool   moves     = trial_points() == Points::stay && level_.coupling().distance(level_.shells(state)) > tolerance;
     const bool   mixes     = level_.viscosity_distance(state) > tolerance;
@@ -315,13 +353,15 @@ namespace tanktread
         const std::string  failure  = iterate(trial, r, step, progress, report);
         if (!failure.empty())
           react(failure, implicit_shells_.n_renewals() > renewals, progress);
-        if (follow_shells(trial, progress))
+        if (!progress.followed && follow_shells(trial, progress))
           {
             r                       = level_.residual(trial, step, trial_points());
             report.residuals.back() = norm(r, step.tau);
-            progress.settled        = progress.settled || report.residuals.back() <= 10. * parameters_.newton_tolerance ||
-              2 * report.newton_iterations >= parameters_.max_newton_iterations;
+            progress.followed       = true;
           }
+        if (progress.followed)
+          progress.settled = progress.settled || report.residuals.back() <= 10. * parameters_.newton_tolerance ||
+            2 * report.newton_iterations >= parameters_.max_newton_iterations;
         progress.solved = is_solved(r, report.residuals.back());
         progress.length = step.tau * report.residuals.back();
       }
