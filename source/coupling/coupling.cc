@@ -118,6 +118,17 @@ namespace tanktread
 
 
   void
+  Coupling::extend_change(const FluidBlockVector &change, const ShellFields &g, ExtendedForces &forces) const
+  {
+    extend(g, forces);
+    if (jumps_->are_none() || contrast_.ratio == 1.)
+      return;
+    interpolation_->gradients(change, moments_);
+    jumps_->add_viscous_change(moments_, forces);
+  }
+
+
+  void
   Coupling::update_viscous_forces(const FluidBlockVector &fields, const ShellFields &g)
   {
     if (jumps_->are_none() || contrast_.ratio == 1.)
@@ -131,7 +142,17 @@ namespace tanktread
         for (Eigen::Index i = 0; i < undisturbed.size(); ++i)
           moments_[9 * std::size_t(transfer.range().begin) + i] += undisturbed.data()[i];
       }
-    jumps_->update_viscous_forces(moments_, forces);
+    // The contribution changes the gradients itself, a little: it is made to agree with itself.
+    constexpr unsigned int n_repetitions = 3;
+    for (unsigned int i = 0; i < n_repetitions; ++i)
+      {
+        if (i > 0)
+          {
+            jumps_->extend(forces);
+            jumps_->complete(forces);
+          }
+        jumps_->update_viscous_forces(moments_, forces);
+      }
   }
 
 

@@ -122,7 +122,7 @@ namespace tanktread
             const bool    fixed = nodes[a] + 1 == u.n_local(); // the last place is that of all nodes on faces with prescribed velocity
             if (std::isnan(value) || fixed)
               {
-                value               = distance.at(node);
+                value              = distance.at(node);
                 image_of[nodes[a]] = node;
               }
             else if (image_of[nodes[a]] != node)
@@ -144,8 +144,9 @@ namespace tanktread
   JumpEnrichment::refuse_own_image(const unsigned int n_conflicts) const
   {
     if (dealii::Utilities::MPI::max(n_conflicts, space_.mesh.communicator()) > 0)
-      throw NumericalError("A capsule has come so near to a periodic image of itself that cells of the fluid see both, which the enriched interface cannot tell apart. "
-                           "Take a larger Scene/Box side, a smaller Fluid mesh/Finest cell or Solver/Interface = plain.");
+      throw NumericalError(
+        "A capsule has come so near to a periodic image of itself that cells of the fluid see both, which the enriched interface cannot tell apart. "
+        "Take a larger Scene/Box side, a smaller Fluid mesh/Finest cell or Solver/Interface = plain.");
   }
 
 
@@ -193,9 +194,9 @@ namespace tanktread
 
 
   void
-  JumpEnrichment::update_viscous_forces(const std::vector<double> &gradients, const VertexArray &forces)
+  JumpEnrichment::viscous_forces(const std::vector<double> &gradients, const VertexArray &forces, VertexArray &g) const
   {
-    std::vector<double> g(gradients.size() / 3, 0.);
+    std::vector<double> at_points(gradients.size() / 3, 0.);
     for (const VertexAverages::Group &group : averages_.groups())
       {
         const VertexForces f = averages_.at_cell(forces, group.cell);
@@ -210,10 +211,10 @@ namespace tanktread
             const Vector4        &normal = averages_.normal(i);
             const Eigen::Vector3d n(normal[0], normal[1], normal[2]);
             const Eigen::Vector3d traction = (1. - contrast_.ratio) * averages_.area(i) * (G * n + G.transpose() * n);
-            std::copy_n(traction.data(), 3, &g[3 * r]);
+            std::copy_n(traction.data(), 3, &at_points[3 * r]);
           }
       }
-    averages_.extend(g, viscous_forces_);
+    averages_.extend(at_points, g);
   }
 
 

@@ -32,7 +32,8 @@ namespace tanktread
     const NodeSpace &p = *space_.pressure;
     values.resize_fast(p.full_size());
     p.load(fields.block(pressure_block), values.data());
-    const double mean = dealii::Utilities::MPI::sum(std::inner_product(integrals_.begin(), integrals_.end(), values.begin(), 0.), space_.mesh.communicator()) / volume_;
+    const double mean =
+      dealii::Utilities::MPI::sum(std::inner_product(integrals_.begin(), integrals_.end(), values.begin(), 0.), space_.mesh.communicator()) / volume_;
     for (unsigned int i = 0; i < p.n_owned(); ++i)
       values[i] -= mean;
     p.update(values.data());

@@ -113,6 +113,18 @@ namespace tanktread
   }
 
 
+  void
+  ShellJumps::add_viscous_change(const std::vector<double> &gradients, ExtendedForces &forces) const
+  {
+    for (std::size_t c = 0; c < shells_.size(); ++c)
+      {
+        shells_[c].viscous_forces(gradients, forces.at_vertices[c], duals_[c]);
+        for (std::size_t i = 0; i < duals_[c].size(); ++i)
+          forces.at_vertices[c][i] += duals_[c][i];
+      }
+  }
+
+
   double
   ShellJumps::undisturbed_work(const ExtendedForces &forces) const
   {

@@ -70,9 +70,9 @@ namespace tanktread
             std::array<double, 8> row = {};
             for (unsigned int a = 0; a < 27; ++a)
               {
-                const unsigned int i     = 27 * k + a;
-                const double       entry = product(
-                  c.nodes.inside[a], d.nodes.inside[node_of_vertex(j)], c.in.divergence[j][i], d.in.divergence[j][i], whole.divergence[j][i]);
+                const unsigned int i = 27 * k + a;
+                const double       entry =
+                  product(c.nodes.inside[a], d.nodes.inside[node_of_vertex(j)], c.in.divergence[j][i], d.in.divergence[j][i], whole.divergence[j][i]);
                 for (unsigned int v = 0; v < 8; ++v)
                   row[v] += entry * c.q[a][v];
               }
@@ -122,13 +122,10 @@ namespace tanktread
 
 
   void
-  ShellPairs::add_cell(const unsigned int             first,
-                       const unsigned int             second,
-                       const JumpEnrichment::CutCell &cut_first,
-                       const JumpEnrichment::CutCell &cut_second)
+  ShellPairs::add_cell(const unsigned int first, const unsigned int second, const JumpEnrichment::CutCell &cut_first, const JumpEnrichment::CutCell &cut_second)
   {
-    const double h = space_->velocity->cell_sizes()[cut_first.cell];
-    const CutSide   c(cut_first.nodes, h), d(cut_second.nodes, h);
+    const double  h = space_->velocity->cell_sizes()[cut_first.cell];
+    const CutSide c(cut_first.nodes, h), d(cut_second.nodes, h);
     cells_.push_back({first, second, cut_first.cell, laplace_products(c, d), mixed_products(c, d), mixed_products(d, c)});
   }
 

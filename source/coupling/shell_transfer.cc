@@ -202,7 +202,7 @@ namespace tanktread
     const unsigned int     n       = surface_.support_size();
     const AssemblyPattern &pattern = surface_.pattern();
     const int *const support = surface_.support(points.face), *const places = pattern.places(points.face);
-    const auto       add     = [&](const unsigned int i, const unsigned int j, const std::array<Vector4, 3> &block) {
+    const auto add = [&](const unsigned int i, const unsigned int j, const std::array<Vector4, 3> &block) {
       const int length = pattern.row_length(support[i]);
       double   *entry  = matrix_values + 9 * pattern.row_start(support[i]) + 3 * places[i * n + j];
       for (unsigned int c = 0; c < 3; ++c, entry += 3 * length)

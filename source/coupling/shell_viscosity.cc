@@ -27,12 +27,12 @@ namespace tanktread
   Viscosity
   ShellViscosity::operator()(const SurfaceDistance &distance, const double ratio) const
   {
-    const double       least = std::min(1., ratio);
-    const CellSides    sides(distance.runs_nearby());
-    CutCells           cut;
-    const Lattice     &low   = distance.low();
-    const auto         n     = space_.mesh.n_cubes(space_.mesh.finest_level());
-    const NodeSpace   &nodes = *space_.velocity;
+    const double     least = std::min(1., ratio);
+    const CellSides  sides(distance.runs_nearby());
+    CutCells         cut;
+    const Lattice   &low   = distance.low();
+    const auto       n     = space_.mesh.n_cubes(space_.mesh.finest_level());
+    const NodeSpace &nodes = *space_.velocity;
     // The image of a cell that may be near the shell or inside.
     const auto image = [&](Lattice cell) {
       for (unsigned int d = 0; d < 3; ++d)

@@ -213,7 +213,7 @@ namespace tanktread
     for (unsigned int d = 0; d < 3; ++d)
       home[d] = node[d] >= 0 ? node[d] / 2 : (node[d] - 1) / 2;
     const std::int64_t    first = home[0] - (node[0] % 2 == 0 ? 2 : 1), last = home[0] + 1;
-    const Eigen::Vector3d y = corner_ + 0.5 * h_ * Eigen::Vector3d(node[0], node[1], node[2]);
+    const Eigen::Vector3d y        = corner_ + 0.5 * h_ * Eigen::Vector3d(node[0], node[1], node[2]);
     constexpr double      rounding = 1e-9;
     double                nearest  = std::numeric_limits<double>::infinity();
     Eigen::Index          found    = order_.size();

@@ -46,7 +46,7 @@ namespace tanktread
     ShellFields                      moments, dx;
     {
       const Timings::Scope scope(timings_, "- coupling");
-      coupling.extend(densities(unknowns), forces_);
+      extend(src, densities(unknowns), forces_);
       moments = coupling.velocity_moments(src, forces_);
     }
     {

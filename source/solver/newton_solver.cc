@@ -100,12 +100,12 @@ namespace tanktread
 
 
   LinearReport
-  NewtonSolver::linear_solve(const Residual &r, const LinearisedShells &shells, const double tolerance, State &increment)
+  NewtonSolver::linear_solve(const Residual &r, const LinearisedShells &shells, const double tolerance, State &increment, const bool jumps_follow)
   {
     const Timings::Scope     scope(timings_, "Linear solver");
     const Fluid             &fluid   = level_.fluid();
     const Inertia *const     inertia = shells.tau() > 0. ? level_.inertia() : nullptr;
-    const MonolithicOperator matrix(fluid.stokes(), shells, layout_, &timings_, inertia);
+    const MonolithicOperator matrix(fluid.stokes(), shells, layout_, &timings_, inertia, jumps_follow);
     if (!pressure_jumps_)
       {
         const Timings::Scope jump_scope(timings_, "- pressure jumps");
@@ -131,21 +131,25 @@ namespace tanktread
     for (unsigned int c = 0; c < shells.size(); ++c)
       layout_.set(rhs, c, r.capsules[c].flux + shells[c].flux(zeros[c], dx0[c]), shells.damped(c, -r.capsules[c].force - shells[c].stiffness_times(dx0[c])));
     const LinearReport report = solve_fgmres(matrix, preconditioner, solution, rhs, tolerance, max_linear_iterations(shells.tau()), krylov_basis_);
-    set_increment(solution, r, dx0, shells, increment);
+    set_increment(solution, r, dx0, shells, matrix, increment);
     return report;
   }
 
 
   void
-  NewtonSolver::set_increment(const FluidBlockVector &solution, const Residual &r, const ShellFields &dx0, const LinearisedShells &shells, State &increment)
-    const
+  NewtonSolver::set_increment(const FluidBlockVector   &solution,
+                              const Residual           &r,
+                              const ShellFields        &dx0,
+                              const LinearisedShells   &shells,
+                              const MonolithicOperator &matrix,
+                              State                    &increment) const
   {
     level_.fluid().space().reinit(increment.fluid);
     for (unsigned int b = 0; b <= pressure_block; ++b)
       increment.fluid.block(b) = solution.block(b);
     const std::vector<ShellUnknowns> unknowns = layout_.unknowns(solution);
     ExtendedForces                   extended;
-    level_.coupling().extend(densities(unknowns), extended);
+    matrix.extend(solution, densities(unknowns), extended);
     const ShellFields moments = level_.coupling().velocity_moments(solution, extended);
     increment.capsules.resize(shells.size());
     for (unsigned int c = 0; c < shells.size(); ++c)
@@ -161,91 +165,6 @@ namespace tanktread
         MPI_Bcast(capsule.force.data(), capsule.force.size(), MPI_DOUBLE, 0, layout_.communicator());
         MPI_Bcast(&capsule.volume_shift, 1, MPI_DOUBLE, 0, layout_.communicator());
       }
-  }
-
-
-  bool
-  NewtonSolver::accept_if_better(State &state, Residual &r, const State &increment, const TimeStep &step, const double length, const Points points)
-  {
-    try
-      {
-        const double before = norm(r, step.tau);
-        State        trial  = state;
-        add(trial, length, increment);
-        Residual     r_trial = level_.residual(trial, step, points);
-        const double after   = norm(r_trial, step.tau);
-        if (after > (1. - 1e-4 * length) * before && !is_solved(r_trial, after))
-          return false;
-        state = std::move(trial);
-        r     = std::move(r_trial);
-        return true;
-      }
-    catch (const NumericalError &)
-      {
-        return false; // the trial shell is degenerate or out of the box: a shorter step
-      }
-  }
-
-
-  bool
-  NewtonSolver::has_to_follow(const ShellFields &x, const Progress &progress)
-  {
-    if (trial_points() == Points::follow)
-      return false;
-    if (level_.has_viscosities() && !progress.settled)
-      return true;
-    State shapes; // no flow is needed to tell
-    shapes.capsules.resize(x.size());
-    for (std::size_t c = 0; c < x.size(); ++c)
-      shapes.capsules[c].x = x[c];
-    return level_.coupling().distance(level_.shells(shapes)) > distance_allowed(progress);
-  }
-
-
-  bool
-  NewtonSolver::accept_following(State &state, Residual &r, const State &increment, const TimeStep &step, Progress &progress)
-  {
-    const double before = norm(r, step.tau);
-    try
-      {
-        State trial = state;
-        add(trial, 1., increment);
-        follow_shells(trial, progress);
-        Residual     r_trial = level_.residual(trial, step, trial_points());
-        const double after   = norm(r_trial, step.tau);
-        if (after < (1. - 1e-4) * before || is_solved(r_trial, after))
-          {
-            state = std::move(trial);
-            r     = std::move(r_trial);
-            return true;
-          }
-      }
-    catch (const NumericalError &)
-      {
-        // the trial shell is degenerate or out of the box
-      }
-    level_.set_viscosity(state);
-    level_.move_points(state);
-    if (level_.has_viscosities() && !progress.settled)
-      level_.update_jumps(state);
-    return false;
-  }
-
-
-  double
-  NewtonSolver::line_search(State &state, Residual &r, const State &increment, const TimeStep &step, Progress &progress)
-  {
-    // What has to follow afterwards may do so at once: where the residual falls even so, it need not be computed twice.
-    ShellFields x = positions(state);
-    for (std::size_t c = 0; c < x.size(); ++c)
-      x[c] += increment.capsules[c].x;
-    progress.followed = has_to_follow(x, progress) && accept_following(state, r, increment, step, progress);
-    if (progress.followed)
-      return 1.;
-    for (double length = 1.; length > 0.05; length *= 0.5)
-      if (accept_if_better(state, r, increment, step, length, trial_points()))
-        return length;
-    return 0.;
   }
 
 
@@ -265,7 +184,11 @@ namespace tanktread
     if (report.residuals.empty())
       report.residuals.push_back(norm(r, step.tau));
     State              increment;
-    const LinearReport linear = linear_solve(r, shells, forcing_term(report.residuals.back()), increment);
+    const LinearReport linear = linear_solve(r,
+                                             shells,
+                                             forcing_term(report.residuals.back()),
+                                             increment,
+                                             level_.has_viscosities() && trial_points() == Points::stay && !progress.settled);
     implicit_shells_.watch(linear);
     ++report.newton_iterations;
     report.linear_iterations += linear.iterations;
@@ -274,37 +197,6 @@ namespace tanktread
     report.step_lengths.push_back(line_search(state, r, increment, step, progress));
     report.residuals.push_back(norm(r, step.tau));
     return report.step_lengths.back() == 0. ? "Newton's direction does not reduce the residual" : "";
-  }
-
-
-  double
-  NewtonSolver::distance_allowed(const Progress &progress) const
-  {
-    // Positions within a small part of a cell, which shrinks with the solver's tolerance, are as good as any. A node of the fluid that changes sides makes the
-    // residual jump, and now and
-    // then shell and node would chase each other for ever: then a larger part has to do.
-    constexpr unsigned int patience = 8;
-    const double           h        = level_.finest_cell();
-    return progress.n_moves < patience ? std::min(0.002 * h, 100. * parameters_.newton_tolerance) : 0.02 * h;
-  }
-
-
-  bool
-  NewtonSolver::follow_shells(State &state, Progress &progress)
-  {
-    const Timings::Scope scope(timings_, "Residual");
-    const double tolerance = distance_allowed(progress);
-    const bool   moves     = trial_points() == Points::stay && level_.coupling().distance(level_.shells(state)) > tolerance;
-    const bool   mixes     = level_.viscosity_distance(state) > tolerance;
-    if (moves)
-      level_.move_points(state);
-    if (mixes)
-      level_.set_viscosity(state);
-    progress.n_moves += moves || mixes;
-    const bool sweeps = !progress.settled && level_.has_viscosities() && trial_points() == Points::stay;
-    if (sweeps)
-      level_.update_jumps(state);
-    return moves || mixes || sweeps;
   }
 
 

@@ -39,6 +39,17 @@ namespace tanktread
         }
       return result;
     }
+
+
+    /** Of the shells from such positions, infinite if there are none. */
+    double
+    distance(const State &state, const ShellFields &x)
+    {
+      double result = x.empty() ? std::numeric_limits<double>::infinity() : 0.;
+      for (std::size_t c = 0; c < x.size(); ++c)
+        result = std::max(result, (state.capsules[c].x - x[c]).rowwise().norm().maxCoeff());
+      return result;
+    }
   } // namespace
 
 
@@ -62,6 +73,7 @@ namespace tanktread
     fluid_ = &fluid;
     coupling_.attach(fluid.space());
     memory_.viscosity_x.clear();
+    preconditioner_x_.clear();
     if (has_inertia())
       inertia_ = std::make_unique<Inertia>(fluid.space(), liquids_.reynolds_number, flow_);
   }
@@ -106,8 +118,11 @@ namespace tanktread
     if (!has_viscosities() || viscosity_distance(state) == 0.)
       return;
     const Timings::Scope scope(timings_, "Viscosity");
-    memory_.viscosity_x = positions(state);
-    fluid_->set_viscosity(coupling_.viscosity(*shells(state)[0]));
+    memory_.viscosity_x           = positions(state);
+    const bool for_preconditioner = distance(state, preconditioner_x_) > 0.25 * finest_cell();
+    if (for_preconditioner)
+      preconditioner_x_ = memory_.viscosity_x;
+    fluid_->set_viscosity(coupling_.viscosity(*shells(state)[0]), for_preconditioner);
     undisturbed_load_.reinit(fluid_->space().velocity->partitioner());
     fluid_->viscosity()->add_excess_stress(fluid_->space(), flow_, undisturbed_load_);
   }
@@ -116,12 +131,7 @@ namespace tanktread
   double
   TimeLevel::viscosity_distance(const State &state) const
   {
-    if (!has_viscosities())
-      return 0.;
-    double result = memory_.viscosity_x.empty() ? std::numeric_limits<double>::infinity() : 0.;
-    for (std::size_t c = 0; c < memory_.viscosity_x.size(); ++c)
-      result = std::max(result, (state.capsules[c].x - memory_.viscosity_x[c]).rowwise().norm().maxCoeff());
-    return result;
+    return has_viscosities() ? distance(state, memory_.viscosity_x) : 0.;
   }
 
 

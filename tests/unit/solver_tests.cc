@@ -38,6 +38,39 @@ namespace
 } // namespace
 
 
+TEST(PressureJumpResponse, IsAboutTheSchurComplement)
+{
+  // The flux through the shell that a unit pressure jump drives against the continuous pressures: far less than the volume, which it is without them.
+  StartedScene scene(small_scene({20., 0.}, 0., ellipsoid(2., 1.5, 1.), tight(1e-9, 1e-9), 5., 0.15625));
+  scene.move_points();
+  const ControlPoints v = scene.level().shells(scene.state)[0]->volume_gradient();
+  FluidBlockVector    load, flow;
+  KrylovBasis         basis;
+  const FluidOperator stokes{scene.fluid().stokes()};
+  scene.fluid().space().reinit(load);
+  scene.fluid().space().reinit(flow);
+  scene.coupling().spread({v}, load);
+  ASSERT_TRUE(solve_fgmres(stokes, scene.fluid().preconditioner(), flow, load, 1e-8, 200).converged);
+  const double               exact = v.cwiseProduct(scene.coupling().interpolate(flow)[0]).sum();
+  const PressureJumpResponse response(stokes, scene.fluid().preconditioner(), scene.coupling(), scene.capsule().volume(), basis);
+  const double               s = response.schur_complements()[0];
+  if (is_root())
+    std::cout << "s = " << s << ", exact " << exact << ", volume " << scene.capsule().volume() << std::endl;
+  EXPECT_LT(exact, 0.1 * scene.capsule().volume());
+  EXPECT_GT(s, 0.5 * exact);
+  EXPECT_LT(s, 4. * exact);
+
+  // What only continuous pressures see is no pressure jump.
+  FluidBlockVector pressure_rows(flow), product(flow);
+  pressure_rows                       = 0.;
+  pressure_rows.block(velocity_block) = load.block(velocity_block);
+  scene.fluid().preconditioner().vmult(flow, pressure_rows);
+  stokes.vmult(product, flow);
+  const double flux = v.cwiseProduct(scene.coupling().interpolate(flow)[0]).sum();
+  EXPECT_LT(std::abs(response.pressure_jumps(product.block(pressure_block), {-flux})[0]), 0.5 * std::abs(flux) / s);
+}
+
+
 TEST(ConstantPressureJump, DrivesNoFlow)
 {
   // Nodal forces p0 dV/dx are those of a constant pressure jump; the indicator pressure alone can balance them.

@@ -103,6 +103,13 @@ namespace tanktread
     void
     extend_whole(const ShellFields &g, ExtendedForces &forces) const;
 
+    /**
+     * Changes of the forces where densities change by g and the flow by `change`: with that of the contribution which the flow makes with another viscosity inside,
+     * to first order. Collective.
+     */
+    void
+    extend_change(const FluidBlockVector &change, const ShellFields &g, ExtendedForces &forces) const;
+
     /** Makes that contribution the one of the flow `fields` with forces of densities g. Nothing with one viscosity or the plain interface. Collective. */
     void
     update_viscous_forces(const FluidBlockVector &fields, const ShellFields &g);

@@ -76,7 +76,14 @@ namespace tanktread
      * vertices. Collective.
      */
     void
-    update_viscous_forces(const std::vector<double> &gradients, const VertexArray &forces);
+    update_viscous_forces(const std::vector<double> &gradients, const VertexArray &forces)
+    {
+      viscous_forces(gradients, forces, viscous_forces_);
+    }
+
+    /** That map, which is linear. */
+    void
+    viscous_forces(const std::vector<double> &gradients, const VertexArray &forces, VertexArray &g) const;
 
     /** g of the flow before, for a checkpoint or a test. */
     const VertexArray &

@@ -68,6 +68,10 @@ namespace tanktread
     void
     update_viscous_forces(const std::vector<double> &gradients, const ExtendedForces &forces);
 
+    /** Adds what these changes of gradients and forces will change of them, to first order. Collective. */
+    void
+    add_viscous_change(const std::vector<double> &gradients, ExtendedForces &forces) const;
+
     /** 2 ((mu - 1) eps(u_inf), eps(psi)). Collective. */
     double
     undisturbed_work(const ExtendedForces &forces) const;

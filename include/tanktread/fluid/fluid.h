@@ -40,11 +40,12 @@ namespace tanktread
 
     /** One viscosity everywhere until this is called, and again after a change of mesh. Collective. */
     void
-    set_viscosity(Viscosity viscosity)
+    set_viscosity(Viscosity viscosity, const bool for_preconditioner = true)
     {
       viscosity_ = std::make_unique<Viscosity>(std::move(viscosity));
       stokes_->set_viscosity(*viscosity_);
-      preconditioner_->set_viscosity(*viscosity_);
+      if (for_preconditioner)
+        preconditioner_->set_viscosity(*viscosity_);
     }
 
     /** Null if it is 1 everywhere. */

@@ -27,18 +27,33 @@ namespace tanktread
   class MonolithicOperator
   {
   public:
-    /** All are kept by reference. @param timings where to add what the parts take, or null. @param inertia linearised, or null. */
+    /**
+     * All are kept by reference. @param timings where to add what the parts take, or null. @param inertia linearised, or null. @param jumps_follow whether the
+     * viscous part of the jumps changes with the flow.
+     */
     MonolithicOperator(const StokesOperator   &stokes,
                        const LinearisedShells &shells,
                        const ShellLayout      &layout,
-                       Timings                *timings = nullptr,
-                       const Inertia          *inertia = nullptr)
+                       Timings                *timings      = nullptr,
+                       const Inertia          *inertia      = nullptr,
+                       const bool              jumps_follow = false)
       : stokes_(stokes)
       , shells_(shells)
       , layout_(layout)
       , inertia_(inertia)
       , timings_(timings)
+      , jumps_follow_(jumps_follow)
     {}
+
+    /** The change of forces that belongs to unknowns. Collective. */
+    void
+    extend(const FluidBlockVector &unknowns, const ShellFields &densities, ExtendedForces &forces) const
+    {
+      if (jumps_follow_)
+        shells_.coupling().extend_change(unknowns, densities, forces);
+      else
+        shells_.coupling().extend(densities, forces);
+    }
 
     void
     vmult(FluidBlockVector &dst, const FluidBlockVector &src) const;
@@ -49,6 +64,7 @@ namespace tanktread
     const ShellLayout      &layout_;
     const Inertia *const    inertia_;
     Timings *const          timings_;
+    const bool              jumps_follow_;
     mutable ExtendedForces  forces_;
   };
 

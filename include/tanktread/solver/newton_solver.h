@@ -149,9 +149,14 @@ namespace tanktread
     unsigned int
     max_linear_iterations(double tau) const;
     LinearReport
-    linear_solve(const Residual &r, const LinearisedShells &shells, double tolerance, State &increment);
+    linear_solve(const Residual &r, const LinearisedShells &shells, double tolerance, State &increment, bool jumps_follow = false);
     void
-    set_increment(const FluidBlockVector &solution, const Residual &r, const ShellFields &dx0, const LinearisedShells &shells, State &increment) const;
+    set_increment(const FluidBlockVector   &solution,
+                  const Residual           &r,
+                  const ShellFields        &dx0,
+                  const LinearisedShells   &shells,
+                  const MonolithicOperator &matrix,
+                  State                    &increment) const;
     /**
      * Moves `state` along `increment` with the longest step length of 1, 1/2, ... that reduces the norm of the residual; returns 0 if there is none. A full step
      * after which follow_shells() would have something to do is tried with that done, then without.

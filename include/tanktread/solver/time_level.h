@@ -52,8 +52,8 @@ namespace tanktread
       double        volume; // V - V0
     };
 
-    FluidBlockVector       fluid;       // A u - B^T p - sum R(F + pi v), -B u
-    double                 shell_speed; // root mean square of J P^{-1} (r_u, r_p), P the Stokes preconditioner: about how fast the missing forces would move the shells
+    FluidBlockVector fluid; // A u - B^T p - sum R(F + pi v), -B u
+    double shell_speed;     // root mean square of J P^{-1} (r_u, r_p), P the Stokes preconditioner: about how fast the missing forces would move the shells
     std::vector<OfCapsule> capsules;
   };
 
@@ -213,7 +213,8 @@ namespace tanktread
     Timings                 &timings_;
     UndisturbedFlow          flow_;
     FluidVector              undisturbed_load_;
-    std::unique_ptr<Inertia> inertia_; // none without it
+    ShellFields              preconditioner_x_; // where the shells were when its viscosity was set; empty: nowhere on this mesh
+    std::unique_ptr<Inertia> inertia_;          // none without it
     Fluid                   *fluid_ = nullptr;
     ShellConfigurations      shells_; // where they were asked for last
   };
