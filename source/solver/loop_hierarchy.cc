@@ -95,8 +95,8 @@ namespace tanktread
         LoopLevel level;
         level.n          = int(mesh.vertices.size());
         level.is_divided = n_parts > 1 && level.n >= least_rows * n_parts;
-        level.begin      = level.is_divided ? int(long(level.n) * part / n_parts) : 0;
-        level.end        = level.is_divided ? int(long(level.n) * (part + 1) / n_parts) : level.n;
+        level.begin      = level.is_divided ? level.first_point(part, n_parts) : 0;
+        level.end        = level.is_divided ? level.first_point(part + 1, n_parts) : level.n;
         level.pattern    = std::move(present);
 
         const std::optional<TriangleMesh> coarse = level.n > most_coarse_points ? loop_coarsen(mesh) : std::optional<TriangleMesh>();

@@ -62,7 +62,8 @@ namespace tanktread
     : hierarchy_(std::move(hierarchy))
     , team_(team)
   {
-    MPI_Comm_size(team, &n_ranks_);
+    int n_ranks;
+    MPI_Comm_size(team, &n_ranks);
     for (const LoopLevel &level : hierarchy_->levels())
       {
         levels_.emplace_back();
@@ -70,6 +71,11 @@ namespace tanktread
           field->assign(4 * std::size_t(level.n), 0.);
         if (!level.patches)
           break;
+        for (int rank = 0; level.is_divided && rank < n_ranks; ++rank)
+          {
+            levels_.back().starts.push_back(4 * level.first_point(rank, n_ranks));
+            levels_.back().counts.push_back(4 * level.first_point(rank + 1, n_ranks) - levels_.back().starts.back());
+          }
         levels_.back().S = BlockRows(level.pattern, level.begin, level.end);
         levels_.back().B = level.patches->matrix();
       }
@@ -119,16 +125,9 @@ namespace tanktread
   void
   ShellMultigrid::exchange(const std::size_t l, PaddedField &field) const
   {
-    const LoopLevel &level = hierarchy_->levels()[l];
-    if (!level.is_divided)
-      return;
-    std::vector<int> counts(n_ranks_), starts(n_ranks_);
-    for (int rank = 0; rank < n_ranks_; ++rank)
-      {
-        starts[rank] = 4 * int(long(level.n) * rank / n_ranks_);
-        counts[rank] = 4 * int(long(level.n) * (rank + 1) / n_ranks_) - starts[rank];
-      }
-    MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, field.data(), counts.data(), starts.data(), MPI_DOUBLE, team_);
+    const Level &level = levels_[l];
+    if (!level.counts.empty())
+      MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, field.data(), level.counts.data(), level.starts.data(), MPI_DOUBLE, team_);
   }
 
 

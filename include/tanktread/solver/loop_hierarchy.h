@@ -21,6 +21,13 @@ namespace tanktread
     bool         is_divided = false;        // otherwise all parts have all points
     BlockPattern pattern;                   // of the shell's matrix
 
+    /** Of a part, where the level is divided into n_parts. */
+    int
+    first_point(const int part, const int n_parts) const
+    {
+      return int(long(n) * part / n_parts);
+    }
+
     // Not on the coarsest level:
     std::optional<PatchInverses>   patches;
     SparseMatrix                   prolongation; // from the next coarser mesh, for one component

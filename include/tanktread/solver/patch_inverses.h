@@ -29,11 +29,11 @@ namespace tanktread
     }
 
     /**
-     * B for the matrix S of these values. By elimination without pivots, which needs positive (or otherwise harmless) patches: the result is not finite, or
+     * B for the matrix S of these values; `starts` are those of its pattern. By elimination without pivots, which needs positive (or otherwise harmless) patches: the result is not finite, or
      * useless, where they are not.
      */
     void
-    compute(const std::vector<int> &lengths, const double *values, BlockRows &B) const;
+    compute(const std::vector<int> &starts, const double *values, BlockRows &B) const;
 
   private:
     static constexpr int n_lanes = 8; // patches inverted at once

@@ -47,6 +47,7 @@ namespace tanktread
     {
       BlockRows           S, B;
       double              largest_eigenvalue = 0.; // of B S
+      std::vector<int>    counts, starts;          // numbers of a field on each rank, and where they begin; if the level is divided
       mutable PaddedField b, x, r, z;
     };
 
@@ -65,7 +66,6 @@ namespace tanktread
 
     std::shared_ptr<const LoopHierarchy> hierarchy_;
     MPI_Comm                             team_;
-    int                                  n_ranks_;
     std::vector<Level>                   levels_;
     Eigen::PartialPivLU<Eigen::MatrixXd> coarsest_;
   };
