@@ -258,29 +258,43 @@ namespace
   }
 
 
-  Measurement
-  measure(const unsigned int cells, const Options &options)
+  /** Stokes solves and implicit solves with the plain interface. The scene goes before steps are measured: their memory is their own. */
+  template <typename Progress>
+  void
+  measure_solves(const unsigned int cells, const Options &options, const Progress &progress, Measurement &result)
   {
-    const double dt = options.dt;
-    Measurement  result;
-    result.mesh         = "10a/" + std::to_string(cells);
-    const auto progress = [&](const Entries &entries) {
-      if (is_first_rank())
-        std::cerr << line(result.mesh, entries, &Entry::name) << line(result.mesh, entries, &Entry::text) << std::flush;
-    };
     forget_peak_memory();
     Scene          scene(sheared_sphere(cells), MPI_COMM_WORLD);
     const Capsule &capsule = scene.capsule();
     measure_stokes(scene, options.ml, result);
     progress(result.problem);
     if (options.ml)
-      {
-        progress(result.algebraic);
-        return result;
-      }
+      progress(result.algebraic);
+    if (options.ml || options.steps)
+      return;
+    result.solves = measure_implicit_solves(scene, "deformed", deformed(capsule), Tangent::positive, options.dt);
+    progress(result.solves);
+    refine_around(scene, capsule.initial());
+    result.solves_at_sphere = measure_implicit_solves(scene, "sphere", capsule.initial(), Tangent::exact, options.dt);
+    progress(result.solves_at_sphere);
+  }
+
+
+  Measurement
+  measure(const unsigned int cells, const Options &options)
+  {
+    Measurement result;
+    result.mesh         = "10a/" + std::to_string(cells);
+    const auto progress = [&](const Entries &entries) {
+      if (is_first_rank())
+        std::cerr << line(result.mesh, entries, &Entry::name) << line(result.mesh, entries, &Entry::text) << std::flush;
+    };
+    measure_solves(cells, options, progress, result);
+    if (options.ml)
+      return result;
     const SceneDescription enriched = sheared_sphere(cells, Interface::enriched);
     const auto             steps    = [&](const SceneDescription &description, const std::string &name, Entries &entries) {
-      entries = measure_steps(description, dt, name);
+      entries = measure_steps(description, options.dt, name);
       progress(entries);
     };
     if (options.steps)
@@ -288,11 +302,6 @@ namespace
         steps(with_viscosity_ratio(enriched, options.ratio), "", result.steps);
         return result;
       }
-    result.solves = measure_implicit_solves(scene, "deformed", deformed(capsule), Tangent::positive, dt);
-    progress(result.solves);
-    refine_around(scene, capsule.initial());
-    result.solves_at_sphere = measure_implicit_solves(scene, "sphere", capsule.initial(), Tangent::exact, dt);
-    progress(result.solves_at_sphere);
     steps(sheared_sphere(cells), "plain ", result.plain_steps);
     steps(enriched, "", result.steps);
     steps(with_viscosity_ratio(enriched, 5.), "viscous ", result.viscous_steps);

@@ -15,7 +15,7 @@ namespace tanktread
 {
   namespace
   {
-    constexpr std::array<unsigned int, 2> nodes_in_cell = {{27, 8}}, numbers_a_node = {{3, 1}};
+    constexpr std::array<unsigned int, 2> nodes_in_cell = {{27, 8}}, numbers_a_node = {{3, 1}}, strides = {{4, 1}}; // NodeSpace::stride()
 
     /** The Lagrange functions of an axis at x: three quadratic ones or two linear ones. */
     std::array<double, 3>
@@ -25,35 +25,22 @@ namespace tanktread
         return {{1. - x, x, 0.}};
       return quadratic_values(x);
     }
-
-    void
-    append_cell_values(const NodeSpace &nodes, const std::vector<dealii::AlignedVector<double>> &fields, std::vector<double> &values)
-    {
-      for (unsigned int cell = 0; cell < nodes.n_cells(); ++cell)
-        for (const auto &field : fields)
-          for (unsigned int a = 0; a < nodes.nodes_per_cell(); ++a)
-            {
-              const double *const node = field.data() + std::size_t(nodes.stride()) * nodes.cell_nodes(cell)[a];
-              values.insert(values.end(), node, node + nodes.n_components());
-            }
-    }
   } // namespace
 
 
   FieldTransfer::FieldTransfer(const TaylorHoodSpace &space, const std::vector<FluidBlockVector *> &fields)
-    : n_fields_(fields.size())
   {
     for (unsigned int block = 0; block < 2; ++block)
       {
-        const NodeSpace                           &nodes = block == velocity_block ? *space.velocity : *space.pressure;
-        std::vector<dealii::AlignedVector<double>> arrays(n_fields_);
-        for (unsigned int f = 0; f < n_fields_; ++f)
+        const NodeSpace &nodes = block == velocity_block ? *space.velocity : *space.pressure;
+        for (const FluidBlockVector *const field : fields)
           {
-            arrays[f].resize(nodes.full_size());
-            nodes.load(fields[f]->block(block), arrays[f].data());
-            nodes.update(arrays[f].data());
+            values_[block].emplace_back(nodes.full_size());
+            nodes.load(field->block(block), values_[block].back().data());
+            nodes.update(values_[block].back().data());
           }
-        append_cell_values(nodes, arrays, values_[block]);
+        for (unsigned int cell = 0; cell < nodes.n_cells(); ++cell)
+          nodes_[block].insert(nodes_[block].end(), nodes.cell_nodes(cell), nodes.cell_nodes(cell) + nodes.nodes_per_cell());
       }
 
     std::vector<std::uint64_t> keys;
@@ -100,15 +87,15 @@ namespace tanktread
     std::vector<double> result;
     for (std::size_t i = 0; i < places.size(); i += 4)
       {
-        const auto          x = shape_values(block, places[i + 1]), y = shape_values(block, places[i + 2]), z = shape_values(block, places[i + 3]);
-        const double *const cell = values_[block].data() + std::size_t(places[i]) * n_fields_ * n_nodes * n_numbers;
-        for (unsigned int f = 0; f < n_fields_; ++f)
+        const auto                x = shape_values(block, places[i + 1]), y = shape_values(block, places[i + 2]), z = shape_values(block, places[i + 3]);
+        const unsigned int *const cell = nodes_[block].data() + std::size_t(places[i]) * n_nodes;
+        for (const auto &field : values_[block])
           for (unsigned int c = 0; c < n_numbers; ++c)
             {
               double sum = 0.;
               for (unsigned int a = 0; a < n_nodes; ++a)
-                sum +=
-                  x[a % (degree + 1)] * y[a / (degree + 1) % (degree + 1)] * z[a / ((degree + 1) * (degree + 1))] * cell[(f * n_nodes + a) * n_numbers + c];
+                sum += x[a % (degree + 1)] * y[a / (degree + 1) % (degree + 1)] * z[a / ((degree + 1) * (degree + 1))] *
+                  field[std::size_t(strides[block]) * cell[a] + c];
               result.push_back(sum);
             }
       }

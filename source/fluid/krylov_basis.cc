@@ -57,10 +57,16 @@ namespace tanktread
   void
   KrylovBasis::reinit(const FluidBlockVector &vector)
   {
-    n_      = 0;
-    length_ = 0;
+    n_                       = 0;
+    const std::size_t before = length_;
+    length_                  = 0;
     for (unsigned int b = 0; b < vector.n_blocks(); ++b)
       length_ += vector.block(b).locally_owned_size();
+    if (length_ != before)
+      {
+        v_.clear();
+        z_.clear();
+      }
     communicator_ = vector.block(0).get_mpi_communicator();
   }
 

@@ -83,7 +83,7 @@ namespace tanktread
         if (surface.derivatives() == Derivatives::second)
           return shell_.patches()[q];
         const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
-        return {shell_.points().row(q), surface.S_1().row(q) * shell_.x(), surface.S_2().row(q) * shell_.x(), zero, zero, zero};
+        return {shell_.points().row(q), surface.S_1().at(q, shell_.x()), surface.S_2().at(q, shell_.x()), zero, zero, zero};
       }
 
       const ShellConfiguration &shell_;

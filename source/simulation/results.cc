@@ -63,7 +63,7 @@ namespace tanktread
         throw NumericalError("The fields on the shell cannot be drawn: its mass matrix at this shape is singular.");
       // Control values of the surface field nearest, in the mean square, to values at the quadrature points.
       const auto projected = [&](const Eigen::VectorXd &at_points) -> Eigen::VectorXd {
-        return limit * Eigen::VectorXd(mass.solve(surface.S().transpose() * weights.cwiseProduct(at_points)));
+        return limit * Eigen::VectorXd(mass.solve(surface.S().transposed_times(weights.cwiseProduct(at_points))));
       };
       ShellPicture result{limit * x, {{"velocity", limit * velocity}, {"force_density", limit * Eigen::MatrixXd(mass.solve(Eigen::MatrixXd(f)))}}};
       result.fields.emplace_back("area_stretch", projected(weights.cwiseQuotient(capsule.shell().reference_weights())));
@@ -203,8 +203,7 @@ namespace tanktread
         }
       return 0.;
     };
-    const std::string fluid_file =
-      write_fluid_fields(folder_, "fluid", n_fields_, scene.fluid().space(), state.fluid, scene.level().flow(), interior_pressure);
+    const std::string fluid_file = write_fluid_fields(folder_, "fluid", n_fields_, scene.fluid().space(), state.fluid, scene.level().flow(), interior_pressure);
     on_first_rank(communicator_, [&] {
       const std::string shell_file = "shell_" + number.str() + ".vtu";
       write_shells(folder_ + "/" + shell_file, capsule, state, velocities);

@@ -85,7 +85,7 @@ namespace tanktread
       const SparseMatrix                                                  mass = mass_matrix(surface, weights);
       Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower | Eigen::Upper> solver(mass);
       solver.setTolerance(1e-15);
-      const ControlPoints result = solver.solveWithGuess(surface.S().transpose() * wanted, x);
+      const ControlPoints result = solver.solveWithGuess(surface.S().transposed_times(wanted), x);
       if (solver.info() != Eigen::Success || !result.allFinite())
         throw NumericalError("The control points of the capsule's shape were not found: conjugate gradients stopped at a relative residual of " +
                              number(solver.error()) + " after " + std::to_string(solver.iterations()) + " iterations.");

@@ -79,44 +79,61 @@ namespace tanktread
       return table;
     }
 
-    /** One matrix with the rows of the table for each kind of weights. */
-    std::vector<SparseMatrix>
-    sparse_rows(const LimitStencils &table, const std::vector<const std::vector<double> *> &kinds, const unsigned int n_columns)
+    /** The weights of a table for each kind of stencils, in the order of SubdivisionSurface. */
+    std::vector<const std::vector<double> *>
+    weights_of(const LimitStencils &table, const Derivatives derivatives)
     {
-      const auto      &sizes = table.GetSizes();
-      const auto      &index = table.GetControlIndices();
-      std::vector<int> starts(sizes.size() + 1, 0), permutation(index.size()), columns(index.size());
-      std::partial_sum(sizes.begin(), sizes.end(), starts.begin() + 1);
-      std::iota(permutation.begin(), permutation.end(), 0);
-      for (std::size_t row = 0; row < sizes.size(); ++row)
-        std::sort(permutation.begin() + starts[row], permutation.begin() + starts[row + 1], [&index](const int i, const int j) { return index[i] < index[j]; });
-      std::transform(permutation.begin(), permutation.end(), columns.begin(), [&index](const int i) { return index[i]; });
-
-      std::vector<SparseMatrix> matrices;
-      std::vector<double>       values(index.size());
-      for (const auto *kind : kinds)
-        {
-          std::transform(permutation.begin(), permutation.end(), values.begin(), [&kind](const int i) { return (*kind)[i]; });
-          matrices.emplace_back(Eigen::Map<const SparseMatrix>(sizes.size(), n_columns, values.size(), starts.data(), columns.data(), values.data()));
-        }
-      return matrices;
+      std::vector<const std::vector<double> *> result = {&table.GetWeights()};
+      if (derivatives != Derivatives::none)
+        result.insert(result.end(), {&table.GetDuWeights(), &table.GetDvWeights()});
+      if (derivatives == Derivatives::second)
+        result.insert(result.end(), {&table.GetDuuWeights(), &table.GetDuvWeights(), &table.GetDvvWeights()});
+      return result;
     }
 
-    /** The control points that occur in the rows of each face, ascending. */
+    /** The control points that each face depends on: the vertices of all faces that touch it, ascending. */
     std::vector<std::vector<int>>
-    find_supports(const SparseMatrix &S, const unsigned int n_faces, const unsigned int n_points_per_face)
+    find_supports(const TriangleMesh &topology)
     {
-      std::vector<std::vector<int>> supports(n_faces);
-      for (unsigned int f = 0; f < n_faces; ++f)
+      std::vector<std::vector<int>> neighbours(topology.vertices.size()), supports;
+      for (const auto &face : topology.faces)
+        for (const int v : face)
+          neighbours[v].insert(neighbours[v].end(), face.begin(), face.end());
+      for (const auto &face : topology.faces)
         {
-          for (unsigned int q = f * n_points_per_face; q < (f + 1) * n_points_per_face; ++q)
-            for (SparseMatrix::InnerIterator entry(S, q); entry; ++entry)
-              supports[f].push_back(int(entry.col()));
-          std::sort(supports[f].begin(), supports[f].end());
-          supports[f].erase(std::unique(supports[f].begin(), supports[f].end()), supports[f].end());
+          std::vector<int> support;
+          for (const int v : face)
+            support.insert(support.end(), neighbours[v].begin(), neighbours[v].end());
+          std::sort(support.begin(), support.end());
+          support.erase(std::unique(support.begin(), support.end()), support.end());
+          supports.push_back(std::move(support));
         }
       return supports;
     }
+
+    /** Dense stencils of the points of some faces, one kind after the other for each point, over supports of which `n` numbers have room. */
+    std::vector<double>
+    dense_rows(const LimitStencils &table, const std::vector<const std::vector<int> *> &supports, const Derivatives derivatives, const unsigned int n)
+    {
+      const auto          kinds             = weights_of(table, derivatives);
+      const auto         &sizes             = table.GetSizes();
+      const auto         &index             = table.GetControlIndices();
+      const std::size_t   n_points_per_face = sizes.size() / supports.size();
+      std::vector<double> result(sizes.size() * kinds.size() * n, 0.);
+      std::size_t         entry = 0;
+      for (std::size_t q = 0; q < sizes.size(); ++q)
+        for (int i = 0; i < sizes[q]; ++i, ++entry)
+          {
+            const auto &support = *supports[q / n_points_per_face];
+            const auto  place   = std::lower_bound(support.begin(), support.end(), index[entry]);
+            if (place == support.end() || *place != index[entry])
+              throw std::logic_error("A point of the limit surface depends on control point " + std::to_string(index[entry]) + ", which is not near its face.");
+            for (std::size_t kind = 0; kind < kinds.size(); ++kind)
+              result[(q * kinds.size() + kind) * n + (place - support.begin())] = (*kinds[kind])[entry];
+          }
+      return result;
+    }
+
     std::vector<int>
     find_irregular_faces(const TriangleMesh &topology)
     {
@@ -136,32 +153,31 @@ namespace tanktread
      * derivatives a third time). That happens next to extraordinary vertices only. Differences of the first derivatives, which are right, tell where.
      */
     void
-    correct_second_derivatives(const TriangleMesh         &topology,
-                               const Far::TopologyRefiner &refiner,
-                               const TriangleQuadrature   &quadrature,
-                               std::vector<SparseMatrix>  &matrices)
+    correct_second_derivatives(const std::vector<int>                      &faces,
+                               const Far::TopologyRefiner                  &refiner,
+                               const TriangleQuadrature                    &quadrature,
+                               const std::vector<const std::vector<int> *> &supports,
+                               const unsigned int                           n,
+                               std::vector<double>                         &stencils)
     {
-      const std::vector<int> faces = find_irregular_faces(topology);
-      if (faces.empty())
-        return;
       const double       step    = 1e-4;
       TriangleQuadrature shifted = quadrature;
       shifted.points.col(0).array() += step;
-      const auto         table      = make_limit_stencils(refiner, faces, shifted, Derivatives::first);
-      const SparseMatrix S_1_beside = sparse_rows(*table, {&table->GetDuWeights()}, topology.vertices.size()).front();
-      const int          n_points   = int(quadrature.weights.size());
-      for (std::size_t f = 0; f < faces.size(); ++f)
-        for (int p = 0; p < n_points; ++p)
-          {
-            const int    q          = faces[f] * n_points + p;
-            const double size       = matrices[3].row(q).norm();
-            const auto   difference = SparseMatrix((S_1_beside.row(int(f) * n_points + p) - matrices[1].row(q)) / step);
-            const bool   is_right = (difference - matrices[3].row(q)).norm() < 0.1 * size, is_reversed = (difference + matrices[3].row(q)).norm() < 0.1 * size;
-            if (is_right == is_reversed)
-              throw std::logic_error("Second derivatives of the subdivision surface do not fit the first ones in face " + std::to_string(faces[f]) + ".");
-            for (unsigned int kind = 3; is_reversed && kind < 6; ++kind)
-              matrices[kind].row(q) *= -1.;
-          }
+      const auto         beside   = dense_rows(*make_limit_stencils(refiner, faces, shifted, Derivatives::first), supports, Derivatives::first, n);
+      const Eigen::Index n_points = quadrature.weights.size();
+      using Row                   = Eigen::Map<Eigen::RowVectorXd>;
+      for (Eigen::Index i = 0; i < n_points * Eigen::Index(faces.size()); ++i)
+        {
+          const int                face = faces[i / n_points];
+          double *const            here = stencils.data() + 6 * n * (face * n_points + i % n_points);
+          const Row                first(here + n, n), second(here + 3 * n, n);
+          const Eigen::RowVectorXd difference = (Eigen::Map<const Eigen::RowVectorXd>(beside.data() + 3 * n * i + n, n) - first) / step;
+          const bool is_right = (difference - second).norm() < 0.1 * second.norm(), is_reversed = (difference + second).norm() < 0.1 * second.norm();
+          if (is_right == is_reversed)
+            throw std::logic_error("Second derivatives of the subdivision surface do not fit the first ones in face " + std::to_string(face) + ".");
+          if (is_reversed)
+            Row(here + 3 * n, 3 * n) *= -1.;
+        }
     }
   } // namespace
 
@@ -177,20 +193,7 @@ namespace tanktread
   {
     const auto refiner = make_refiner(topology);
     refiner->RefineAdaptive(Far::TopologyRefiner::AdaptiveOptions(isolation_level(quadrature)));
-    std::vector<int> faces(n_faces_);
-    std::iota(faces.begin(), faces.end(), 0);
-    const auto table = make_limit_stencils(*refiner, faces, quadrature, derivatives);
-
-    std::vector<const std::vector<double> *> values = {&table->GetWeights()};
-    if (derivatives != Derivatives::none)
-      values.insert(values.end(), {&table->GetDuWeights(), &table->GetDvWeights()});
-    if (derivatives == Derivatives::second)
-      values.insert(values.end(), {&table->GetDuuWeights(), &table->GetDuvWeights(), &table->GetDvvWeights()});
-    matrices_ = sparse_rows(*table, values, n_control_points_);
-    if (derivatives == Derivatives::second)
-      correct_second_derivatives(topology, *refiner, quadrature, matrices_);
-
-    const auto face_supports = find_supports(matrices_[0], n_faces_, n_points_per_face_);
+    const auto face_supports = find_supports(topology);
     for (const auto &support : face_supports)
       support_size_ = std::max(support_size_, unsigned((support.size() + 3) / 4 * 4));
     for (const auto &support : face_supports)
@@ -200,24 +203,32 @@ namespace tanktread
       }
     pattern_ = AssemblyPattern(n_control_points_, support_size_, supports_);
 
-    stencils_.assign(std::size_t(n_points()) * n_stencils() * support_size_, 0.);
-    for (unsigned int q = 0; q < n_points(); ++q)
-      for (unsigned int kind = 0; kind < n_stencils(); ++kind)
-        for (SparseMatrix::InnerIterator entry(matrices_[kind], q); entry; ++entry)
-          {
-            const auto &support = face_supports[q / n_points_per_face_];
-            const auto  place   = std::lower_bound(support.begin(), support.end(), int(entry.col())) - support.begin();
-            stencils_[(std::size_t(q) * n_stencils() + kind) * support_size_ + place] = entry.value();
-          }
+    const auto supports_of = [&](const std::vector<int> &faces) {
+      std::vector<const std::vector<int> *> result;
+      for (const int f : faces)
+        result.push_back(&face_supports[f]);
+      return result;
+    };
+    std::vector<int> faces(n_faces_);
+    std::iota(faces.begin(), faces.end(), 0);
+    stencils_ = dense_rows(*make_limit_stencils(*refiner, faces, quadrature, derivatives), supports_of(faces), derivatives, support_size_);
+    if (const std::vector<int> irregular = find_irregular_faces(topology); derivatives == Derivatives::second && !irregular.empty())
+      correct_second_derivatives(irregular, *refiner, quadrature, supports_of(irregular), support_size_, stencils_);
   }
 
 
-  const SparseMatrix &
-  SubdivisionSurface::matrix(const unsigned int kind) const
+  LimitMap
+  SubdivisionSurface::map(const unsigned int kind) const
   {
-    if (kind >= matrices_.size())
+    if (kind >= n_stencils())
       throw std::logic_error("SubdivisionSurface was built without the derivatives that are asked for.");
-    return matrices_[kind];
+    return LimitMap({stencils_.data() + std::size_t(kind) * support_size_,
+                     supports_.data(),
+                     n_stencils() * support_size_,
+                     support_size_,
+                     n_faces_,
+                     n_points_per_face_,
+                     n_control_points_});
   }
 
 

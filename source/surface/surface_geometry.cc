@@ -114,9 +114,9 @@ namespace tanktread
         centred.a_2.row(q) = w * value.cross(first);
         closure += centred.X.row(q);
       }
-    ControlPoints gradient = surface.S().transpose() * centred.X;
-    gradient += surface.S_1().transpose() * centred.a_1;
-    gradient += surface.S_2().transpose() * centred.a_2;
+    ControlPoints gradient = surface.S().transposed_times(centred.X);
+    gradient += surface.S_1().transposed_times(centred.a_1);
+    gradient += surface.S_2().transposed_times(centred.a_2);
     gradient.rowwise() -= closure / double(x.rows()); // each point moves xbar
     return gradient;
   }

@@ -70,7 +70,7 @@ namespace tanktread::oracle
     ControlPoints
     nodal_forces(const ControlPoints &f, const unsigned int c = 0) const
     {
-      return coupling_surface.S().transpose() * (weights(c).asDiagonal() * f);
+      return coupling_surface.S().transposed_times(weights(c).asDiagonal() * f);
     }
 
     /** Flow (u, p, pi) that nodal forces drive, and the velocity of the control points. */
@@ -96,7 +96,11 @@ namespace tanktread::oracle
       Flow                           result{layout.vector(fluid.space()), {}, {}, 0};
       const MonolithicOperator       matrix(fluid.stokes(), linear, layout);
       KrylovBasis                    basis;
-      const PressureJumpResponse     jumps({fluid.stokes()}, fluid.preconditioner(), coupling, shells[0]->volume() / scene.level().liquids().mean_viscosity(), basis);
+      const PressureJumpResponse     jumps({fluid.stokes()},
+                                       fluid.preconditioner(),
+                                       coupling,
+                                       shells[0]->volume() / scene.level().liquids().mean_viscosity(),
+                                       basis);
       const MonolithicPreconditioner preconditioner(fluid.preconditioner(), linear, layout, jumps);
       for (unsigned int sweep = 0; sweep <= n_sweeps; ++sweep)
         {

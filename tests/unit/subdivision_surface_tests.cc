@@ -31,10 +31,10 @@ namespace
         const SubdivisionSurface surface(mesh, triangle_quadrature(12, 1), Derivatives::second);
         const VectorXd           ones = VectorXd::Ones(mesh.vertices.size()), ones_q = VectorXd::Ones(surface.n_points());
         EXPECT_LT((surface.S() * ones - ones_q).cwiseAbs().maxCoeff(), 1e-14);
-        for (const SparseMatrix *D : {&surface.S_1(), &surface.S_2()})
-          EXPECT_LT((*D * ones).cwiseAbs().maxCoeff(), 1e-13);
-        for (const SparseMatrix *D : {&surface.S_11(), &surface.S_12(), &surface.S_22()})
-          EXPECT_LT((*D * ones).cwiseAbs().maxCoeff(), 1e-12);
+        for (const LimitMap &D : {surface.S_1(), surface.S_2()})
+          EXPECT_LT((D * ones).cwiseAbs().maxCoeff(), 1e-13);
+        for (const LimitMap &D : {surface.S_11(), surface.S_12(), surface.S_22()})
+          EXPECT_LT((D * ones).cwiseAbs().maxCoeff(), 1e-12);
         EXPECT_NEAR(surface.weights().sum(), 0.5 * surface.n_faces(), 1e-10);
       }
   }
@@ -81,7 +81,7 @@ namespace
     for (unsigned int k = 0; k < 6; ++k)
       {
         const unsigned int q   = 6 * f + k;
-        const auto         row = [&](const SparseMatrix &D, const VectorXd &u) { return D.row(q).dot(u); };
+        const auto         row = [&](const LimitMap &D, const VectorXd &u) { return (D * u)[q]; };
         EXPECT_NEAR(row(surface.S(), s), rule.points(k, 0), 1e-14);
         EXPECT_NEAR(row(surface.S(), t), rule.points(k, 1), 1e-14);
         EXPECT_NEAR(row(surface.S_1(), s), 1., 1e-14);
@@ -114,13 +114,13 @@ namespace
             return SubdivisionSurface(mesh, shifted, Derivatives::first);
           };
           const SubdivisionSurface surface(mesh, rule, Derivatives::second), right = at(h, 0), left = at(-h, 0), up = at(0, h), down = at(0, -h);
-          const double             size = surface.S_1().norm(), size_2 = surface.S_11().norm();
-          EXPECT_LT(distance((right.S() - left.S()) / (2 * h), surface.S_1()), 1e-8 * size);
-          EXPECT_LT(distance((up.S() - down.S()) / (2 * h), surface.S_2()), 1e-8 * size);
-          EXPECT_LT(distance((right.S_1() - left.S_1()) / (2 * h), surface.S_11()), 1e-8 * size_2);
-          EXPECT_LT(distance((right.S_2() - left.S_2()) / (2 * h), surface.S_12()), 1e-8 * size_2);
-          EXPECT_LT(distance((up.S_1() - down.S_1()) / (2 * h), surface.S_12()), 1e-8 * size_2);
-          EXPECT_LT(distance((up.S_2() - down.S_2()) / (2 * h), surface.S_22()), 1e-8 * size_2);
+          const double             size = surface.S_1().matrix().norm(), size_2 = surface.S_11().matrix().norm();
+          EXPECT_LT(distance((right.S().matrix() - left.S().matrix()) / (2 * h), surface.S_1().matrix()), 1e-8 * size);
+          EXPECT_LT(distance((up.S().matrix() - down.S().matrix()) / (2 * h), surface.S_2().matrix()), 1e-8 * size);
+          EXPECT_LT(distance((right.S_1().matrix() - left.S_1().matrix()) / (2 * h), surface.S_11().matrix()), 1e-8 * size_2);
+          EXPECT_LT(distance((right.S_2().matrix() - left.S_2().matrix()) / (2 * h), surface.S_12().matrix()), 1e-8 * size_2);
+          EXPECT_LT(distance((up.S_1().matrix() - down.S_1().matrix()) / (2 * h), surface.S_12().matrix()), 1e-8 * size_2);
+          EXPECT_LT(distance((up.S_2().matrix() - down.S_2().matrix()) / (2 * h), surface.S_22().matrix()), 1e-8 * size_2);
         }
   }
 
@@ -148,23 +148,29 @@ namespace
         }
   }
 
-  TEST(SubdivisionSurface, DenseStencilsAreTheSparseRows)
+  TEST(SubdivisionSurface, MapsAreTheirStencils)
   {
     for (const TriangleMesh &mesh : {icosphere(2), flipped_icosphere()})
       {
         const SubdivisionSurface surface(mesh, triangle_quadrature(3), Derivatives::second);
         EXPECT_EQ(surface.support_size(), mesh.vertices.size() == 162 && mesh.faces == icosphere(2).faces ? 12u : 16u);
-        const ControlPoints x          = random_field(mesh.vertices.size(), 1., 1);
-        const SparseMatrix *matrices[] = {&surface.S(), &surface.S_1(), &surface.S_2(), &surface.S_11(), &surface.S_12(), &surface.S_22()};
+        const ControlPoints x      = random_field(mesh.vertices.size(), 1., 1);
+        const LimitMap      maps[] = {surface.S(), surface.S_1(), surface.S_2(), surface.S_11(), surface.S_12(), surface.S_22()};
+        const ControlPoints y      = random_field(surface.n_points(), 1., 2);
         for (unsigned int kind = 0; kind < 6; ++kind)
           {
-            const ControlPoints wanted = *matrices[kind] * x;
+            const ControlPoints wanted = maps[kind] * x;
+            EXPECT_LT((maps[kind].matrix() * x - wanted).norm(), 1e-11);
+            EXPECT_LT((maps[kind].matrix().transpose() * y - maps[kind].transposed_times(y)).norm(), 1e-11);
+            EXPECT_LT((maps[kind] * x.col(1) - wanted.col(1)).norm(), 1e-12);
+            EXPECT_LT((maps[kind].transposed_times(y.col(2)) - maps[kind].transposed_times(y).col(2)).norm(), 1e-12);
             for (unsigned int q = 0; q < surface.n_points(); ++q)
               {
                 Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
                 for (unsigned int i = 0; i < surface.support_size(); ++i)
                   sum += surface.stencils(q)[kind * surface.support_size() + i] * x.row(surface.support(q / 3)[i]);
                 ASSERT_LT((sum - wanted.row(q)).norm(), 1e-13);
+                ASSERT_LT((maps[kind].at(q, x) - wanted.row(q)).norm(), 1e-13);
               }
           }
       }
@@ -174,6 +180,8 @@ namespace
   {
     const SubdivisionSurface surface(icosphere(1), triangle_quadrature(3), Derivatives::first);
     EXPECT_THROW(surface.S_11(), std::logic_error);
+    EXPECT_THROW(surface.S() * VectorXd::Ones(41), std::logic_error);
+    EXPECT_THROW(surface.S().transposed_times(VectorXd::Ones(42)), std::logic_error);
     EXPECT_THROW(mean_curvature(surface, positions(icosphere(1))), std::logic_error);
     EXPECT_THROW(normals(surface, ControlPoints::Zero(42, 3)), NumericalError);
     ControlPoints x = positions(icosphere(1));
@@ -186,7 +194,7 @@ namespace
   {
     const SubdivisionSurface surface(flipped_icosphere(), triangle_quadrature(3), Derivatives::none);
     const SparseMatrix       mass   = mass_matrix(surface, surface.weights());
-    const SparseMatrix       direct = surface.S().transpose() * surface.weights().asDiagonal() * surface.S();
+    const SparseMatrix       direct = surface.S().matrix().transpose() * surface.weights().asDiagonal() * surface.S().matrix();
     EXPECT_LT(distance(mass, direct), 1e-14);
     const SparseMatrix block = surface.pattern().block_matrix();
     EXPECT_EQ(block.nonZeros(), 9 * mass.nonZeros());

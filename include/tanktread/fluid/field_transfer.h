@@ -20,7 +20,7 @@ namespace tanktread
   class FieldTransfer
   {
   public:
-    /** Copies what `fields` are on the cells of this rank. Collective. */
+    /** Copies `fields`. Collective. */
     FieldTransfer(const TaylorHoodSpace &space, const std::vector<FluidBlockVector *> &fields);
 
     /** Sets `fields`, as many and in the same order, to vectors of `space`, on a mesh made of the same box. Collective. */
@@ -50,9 +50,9 @@ namespace tanktread
       unsigned int rank, number;
     };
 
-    unsigned int                            n_fields_;
-    std::unordered_map<std::uint64_t, Cell> cells_;     // by packed key, of all ranks
-    std::vector<double>                     values_[2]; // of velocities and pressures: cell, field, node, component
+    std::unordered_map<std::uint64_t, Cell>    cells_;     // by packed key, of all ranks
+    std::vector<unsigned int>                  nodes_[2];  // of velocities and pressures: those of each cell of this rank
+    std::vector<dealii::AlignedVector<double>> values_[2]; // full array of each field
   };
 } // namespace tanktread
 

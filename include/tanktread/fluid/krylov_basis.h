@@ -13,7 +13,8 @@ namespace tanktread
   /**
    * Orthonormal vectors v_0, v_1, ... and the preconditioned ones z_0, z_1, ... that belong to them, in single precision: half the memory and half the time for
    * sums over them, and what rounding costs in accuracy is
-   * recovered when GMRES starts again from its residual. The memory stays from one solve to the next.
+   * recovered when GMRES starts again from its residual. The memory stays from one solve to the next of vectors
+   * as long.
    */
   class KrylovBasis
   {

@@ -5,6 +5,7 @@
 #define tanktread_surface_subdivision_surface_h
 
 #include <tanktread/surface/assembly_pattern.h>
+#include <tanktread/surface/limit_map.h>
 #include <tanktread/surface/triangle_mesh.h>
 #include <tanktread/surface/triangle_quadrature.h>
 #include <tanktread/surface/types.h>
@@ -28,8 +29,7 @@ namespace tanktread
    * extraordinary vertices (valence other than 6). There the surface consists of infinitely many quartic rings; the topology is refined until every
    * quadrature point lies in one of them, so that all values are those of the limit surface, not of an approximation to it.
    *
-   * The rows are held twice: as sparse matrices (n_points x NP), and as dense stencils over the control points of a face (its `support`), which all
-   * points of the face share.
+   * The rows are held as dense stencils over the control points of a face (its `support`), which all points of the face share.
    */
   class SubdivisionSurface
   {
@@ -82,40 +82,40 @@ namespace tanktread
       return weights_;
     }
 
-    /** Values, X = S x; n_points x NP. */
-    const SparseMatrix &
+    /** Values, X = S x; n_points x NP. As those below it refers to this object. */
+    LimitMap
     S() const
     {
-      return matrices_[0];
+      return map(0);
     }
 
     /** First derivatives a_1 = S_1 x, a_2 = S_2 x. Throws std::logic_error if the surface was built without them. */
-    const SparseMatrix &
+    LimitMap
     S_1() const
     {
-      return matrix(1);
+      return map(1);
     }
-    const SparseMatrix &
+    LimitMap
     S_2() const
     {
-      return matrix(2);
+      return map(2);
     }
 
     /** Second derivatives a_{1,1} = S_11 x, a_{1,2} = S_12 x, a_{2,2} = S_22 x. Throws std::logic_error if the surface was built without them. */
-    const SparseMatrix &
+    LimitMap
     S_11() const
     {
-      return matrix(3);
+      return map(3);
     }
-    const SparseMatrix &
+    LimitMap
     S_12() const
     {
-      return matrix(4);
+      return map(4);
     }
-    const SparseMatrix &
+    LimitMap
     S_22() const
     {
-      return matrix(5);
+      return map(5);
     }
 
     /**
@@ -157,17 +157,16 @@ namespace tanktread
     }
 
   private:
-    const SparseMatrix &
-    matrix(unsigned int kind) const;
+    LimitMap
+    map(unsigned int kind) const;
 
-    unsigned int              n_control_points_, n_faces_, n_points_per_face_;
-    Derivatives               derivatives_;
-    Eigen::VectorXd           weights_;
-    std::vector<SparseMatrix> matrices_;
-    unsigned int              support_size_;
-    std::vector<int>          supports_;
-    std::vector<double>       stencils_;
-    AssemblyPattern           pattern_;
+    unsigned int        n_control_points_, n_faces_, n_points_per_face_;
+    Derivatives         derivatives_;
+    Eigen::VectorXd     weights_;
+    unsigned int        support_size_;
+    std::vector<int>    supports_;
+    std::vector<double> stencils_;
+    AssemblyPattern     pattern_;
   };
 
   /**
