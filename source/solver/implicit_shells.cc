@@ -3,7 +3,6 @@
 
 #include <tanktread/base/mpi_errors.h>
 #include <tanktread/solver/implicit_shells.h>
-#include <tanktread/surface/assembly_pattern.h>
 
 #include <algorithm>
 #include <array>
@@ -48,23 +47,6 @@ namespace tanktread
   }
 
 
-  Eigen::Matrix3d
-  ImplicitShells::drift(const unsigned int c) const
-  {
-    return Eigen::Matrix3d::Identity() - memory_.tau * memory_.operators[c].flow_gradient;
-  }
-
-
-  SparseMatrix
-  ImplicitShells::matrix(const unsigned int c) const
-  {
-    SparseMatrix sum = memory_.operators[c].K_pi;
-    sum.coeffs() *= memory_.tau;
-    add_for_three_components(memory_.operators[c].Z, sum, drift(c));
-    return sum;
-  }
-
-
   void
   ImplicitShells::renew(std::vector<ImplicitOperator> operators, const double tau)
   {
@@ -73,25 +55,21 @@ namespace tanktread
     std::fill(has_factors_.begin(), has_factors_.end(), 0);
     try
       {
-        std::vector<SparseMatrix> matrices(layout_.n_capsules());
         for (unsigned int c = 0; c < layout_.n_capsules(); ++c)
-          {
-            if (!layout_.works_on(c))
-              {
-                memory_.operators[c] = {};
-                continue;
-              }
-            matrices[c] = matrix(c);
-            if (multigrids_[c])
-              multigrids_[c]->set_up(matrices[c]);
-            const bool is_good = multigrids_[c] && multigrids_[c]->convergence_factor() < largest_convergence_factor;
-            has_factors_[c]    = layout_.owns(c) && !is_good;
-          }
+          if (layout_.works_on(c))
+            {
+              if (multigrids_[c])
+                multigrids_[c]->set_up(memory_.operators[c].S);
+              const bool is_good = multigrids_[c] && multigrids_[c]->convergence_factor() < largest_convergence_factor;
+              has_factors_[c]    = layout_.owns(c) && !is_good;
+            }
         MPI_Allreduce(MPI_IN_PLACE, has_factors_.data(), int(has_factors_.size()), MPI_CHAR, MPI_MAX, layout_.communicator());
         on_all_ranks(layout_.communicator(), [&] {
           for (unsigned int c = 0; c < layout_.n_capsules(); ++c)
             if (has_factors_[c] && layout_.owns(c))
-              factors_[c]->factorise(matrices[c], "The shell's implicit operator, for this time step,");
+              factors_[c]->factorise(memory_.operators[c].S, "The shell's implicit operator, for this time step,");
+            else
+              memory_.operators[c].S = {};
         });
       }
     catch (...)
@@ -155,6 +133,6 @@ namespace tanktread
   ImplicitShells::damped(const unsigned int c, const ControlPoints &force) const
   {
     const ControlPoints undamped = velocity(c, force);
-    return layout_.owns(c) ? ControlPoints(memory_.operators[c].Z * undamped * drift(c).transpose()) : undamped;
+    return layout_.owns(c) ? ControlPoints(memory_.operators[c].Z * undamped * memory_.operators[c].drift.transpose()) : undamped;
   }
 } // namespace tanktread

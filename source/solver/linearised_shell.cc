@@ -92,7 +92,12 @@ namespace tanktread
   ImplicitOperator
   LinearisedShell::implicit_operator(const Linearisation &choice) const
   {
-    return {inverse_mobility(capsule_.surface(), shell_->x(), choice.h, choice.viscosity), stiffness_, gradient_about(choice.flow, shell_->x())};
+    ImplicitOperator result{inverse_mobility(capsule_.surface(), shell_->x(), choice.h, choice.viscosity),
+                            stiffness_,
+                            Eigen::Matrix3d::Identity() - tau_ * gradient_about(choice.flow, shell_->x())};
+    result.S.coeffs() *= tau_;
+    add_for_three_components(result.Z, result.S, result.drift);
+    return result;
   }
 
 
@@ -183,8 +188,8 @@ namespace tanktread
     if (tau_ == 0. || implicit_shells.serves(tau_))
       return;
     std::vector<ImplicitOperator> operators;
-    for (const LinearisedShell &shell : shells_)
-      operators.push_back(shell.implicit_operator(choice));
+    for (unsigned int c = 0; c < shells.size(); ++c)
+      operators.push_back(implicit_shells.works_on(c) ? shells_[c].implicit_operator(choice) : ImplicitOperator());
     implicit_shells.renew(std::move(operators), tau_);
   }
 

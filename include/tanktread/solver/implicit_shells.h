@@ -38,7 +38,14 @@ namespace tanktread
     bool
     serves(double tau) const;
 
-    /** Replaces the operators, one for each capsule. Collective; throws NumericalError on all ranks when one is singular. */
+    /** Whether this rank has to know the operator of capsule c. */
+    bool
+    works_on(const unsigned int c) const
+    {
+      return layout_.works_on(c);
+    }
+
+    /** Replaces the operators, one for each capsule that this rank works on, empty ones for the others. Collective; throws NumericalError on all ranks when one is singular. */
     void
     renew(std::vector<ImplicitOperator> operators, double tau);
 
@@ -73,12 +80,6 @@ namespace tanktread
     velocity(unsigned int c, const ControlPoints &force) const;
 
   private:
-    /** S of a capsule that this rank works on. */
-    SparseMatrix
-    matrix(unsigned int c) const;
-    /** 1 - tau grad u_inf. */
-    Eigen::Matrix3d
-    drift(unsigned int c) const;
     void
     judge(const LinearReport &report);
 

@@ -39,9 +39,9 @@ namespace tanktread
   /** How a LinearisedShell is to be made. */
   struct Linearisation
   {
-    double           tau      = 0.; // effective length of the time step; 0: the shells stay
-    double           h        = 1.; // finest fluid cell
-    double           accuracy = 0.; // relative error that the map dw may have, see ShellMotion
+    double           tau         = 0.; // effective length of the time step; 0: the shells stay
+    double           h           = 1.; // finest fluid cell
+    double           accuracy    = 0.; // relative error that the map dw may have, see ShellMotion
     PointDerivatives derivatives = PointDerivatives::complete;
     Tangent          tangent     = Tangent::exact; // positive: without the negative stiffness of a shell under pressure from its sides, and without -pi H_V
     UndisturbedFlow  flow{};
@@ -65,7 +65,7 @@ namespace tanktread
    * mobility J A^{-1} J^T: c0 + c1 k^2 equals the symbol 4 mu k of
    * that inverse for a plane at both ends of the resolved wave numbers. Eliminating the fluid exactly would leave about
    * (1 + tau K (1 - tau grad u_inf)^{-1} J A^{-1} J^T) dG, so after the multiplication the row is close to dG = ... for any stiffness. ImplicitShells holds
-   * this operator, and it may come from an earlier linearisation.
+   * this operator, which is that of an earlier linearisation where it has factors that still serve.
    *
    * With PointDerivatives::frozen the derivatives of J(x) and R(x) by x are left out, but for the undisturbed flow's: Gamma is that of grad u_inf and D_R = 0.
    * They are the
@@ -154,7 +154,7 @@ namespace tanktread
     {
       return density_;
     }
-    /** What an implicit operator for this linearisation is made of. */
+    /** The implicit operator for this linearisation. */
     ImplicitOperator
     implicit_operator(const Linearisation &choice) const;
 
@@ -185,14 +185,14 @@ namespace tanktread
      *
      * Collective. Throws NumericalError when one of the matrices is singular.
      */
-    LinearisedShells(const DistributedShell         &elasticity,
-                     const Coupling                 &coupling,
-                     const State                    &state,
-                     const ShellConfigurations      &shells,
-                     const ShellFields              &velocities,
+    LinearisedShells(const DistributedShell               &elasticity,
+                     const Coupling                       &coupling,
+                     const State                          &state,
+                     const ShellConfigurations            &shells,
+                     const ShellFields                    &velocities,
                      const std::vector<VelocityGradients> &velocity_gradients,
-                     const Linearisation            &choice,
-                     ImplicitShells                 &implicit_shells);
+                     const Linearisation                  &choice,
+                     ImplicitShells                       &implicit_shells);
 
     const LinearisedShell &
     operator[](const unsigned int c) const

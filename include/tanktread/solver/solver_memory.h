@@ -10,12 +10,12 @@
 
 namespace tanktread
 {
-  /** What one capsule's implicit operator Z_tau + tau K_pi, Z_tau = Z (1 - tau grad u_inf), is made of. */
+  /** One capsule's implicit operator S = Z_tau + tau K_pi, Z_tau = Z D, and the drift D = 1 - tau grad u_inf. */
   struct ImplicitOperator
   {
-    SparseMatrix    Z;             // NP x NP
-    SparseMatrix    K_pi;          // K - pi H_V, 3 NP x 3 NP
-    Eigen::Matrix3d flow_gradient = Eigen::Matrix3d::Zero(); // grad u_inf
+    SparseMatrix    Z; // NP x NP
+    SparseMatrix    S; // 3 NP x 3 NP; empty where a V-cycle has taken what it needs of it
+    Eigen::Matrix3d drift = Eigen::Matrix3d::Identity();
   };
 
   /**
@@ -33,7 +33,7 @@ namespace tanktread
     bool                          worn_out              = false; // to be renewed
     double                        iterations_per_decade = 0.;    // of the best linear solve with them; 0: there was none
     unsigned int                  n_renewals            = 0;
-    std::vector<ImplicitOperator> operators; // of each capsule, on the rank that owns it
+    std::vector<ImplicitOperator> operators; // of each capsule, on the ranks that work on it
   };
 } // namespace tanktread
 
