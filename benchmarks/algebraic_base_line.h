@@ -4,7 +4,7 @@
 #ifndef tanktread_benchmarks_algebraic_base_line_h
 #define tanktread_benchmarks_algebraic_base_line_h
 
-#include <oracle/algebraic_preconditioner.h>
+#include <tanktread/fluid/algebraic_preconditioner.h>
 #include <tanktread/fluid/linear_solver.h>
 
 #include "capsule_scene.h"
@@ -56,16 +56,16 @@ namespace tanktread
   inline SolverCost
   cost_of_algebraic(const Fluid &fluid, const FluidBlockVector &load, const double tolerance)
   {
-    std::unique_ptr<oracle::AssembledStokes>         stokes;
-    std::unique_ptr<oracle::AlgebraicPreconditioner> preconditioner;
-    SolverCost                                       cost;
+    std::unique_ptr<AssembledStokes>         stokes;
+    std::unique_ptr<AlgebraicPreconditioner> preconditioner;
+    SolverCost                               cost;
     cost.set_up = median_time(1, [&] {
-      stokes         = std::make_unique<oracle::AssembledStokes>(fluid.mesh());
-      preconditioner = std::make_unique<oracle::AlgebraicPreconditioner>(*stokes);
+      stokes         = std::make_unique<AssembledStokes>(fluid.space());
+      preconditioner = std::make_unique<AlgebraicPreconditioner>(*stokes);
     });
-    oracle::ComponentVector loads, flow;
+    ComponentVector loads, flow;
     stokes->reinit(loads);
-    stokes->to_components(fluid.space(), load, loads);
+    stokes->to_components(load, loads);
     cost.solve = median_time(3, [&] {
       stokes->reinit(flow);
       cost.report = solve_fgmres(*stokes, *preconditioner, flow, loads, tolerance, 200);

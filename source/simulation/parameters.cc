@@ -12,6 +12,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <sstream>
 
 namespace tanktread
 {
@@ -34,10 +35,17 @@ namespace tanktread
     }
 
     void
-    check_inertia(const SceneParameters &scene, const SolverParameters &solver)
+    check_solver(const SceneParameters &scene, const SolverParameters &solver)
     {
+      std::ostringstream message;
       if (scene.reynolds_number > 0. && solver.coupling == TimeCoupling::explicit_euler)
-        throw InputError("Solver/Coupling is explicit; allowed with Scene/Reynolds number > 0: implicit");
+        message << "Solver/Coupling is explicit; allowed with Scene/Reynolds number > 0: implicit";
+      else if (scene.reynolds_number > 0. && solver.method == StokesMethod::assembled)
+        message << "Solver/Method is assembled; allowed with Scene/Reynolds number = " << scene.reynolds_number << ": matrix-free";
+      else if (scene.viscosity_ratio != 1. && solver.method == StokesMethod::assembled)
+        message << "Solver/Method is assembled; allowed with Scene/Viscosity ratio = " << scene.viscosity_ratio << ": matrix-free";
+      if (!message.str().empty())
+        throw InputError(message.str());
     }
 
     void
@@ -93,7 +101,7 @@ namespace tanktread
                                                        [&] { capsule.check(); },
                                                        [&] { check_mesh_file(capsule); },
                                                        [&] { shell.check(); },
-                                                       [&] { check_inertia(scene, solver); },
+                                                       [&] { check_solver(scene, solver); },
                                                        [&] { fluid_mesh.check(scene.box()); },
                                                        [&] { output.check(); },
                                                        [&] { check_output_folder(output.directory); }};

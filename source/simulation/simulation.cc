@@ -51,6 +51,8 @@ namespace tanktread
       else
         run.included.push_back("variable viscosity (ratio " + number(parameters.scene.viscosity_ratio) +
                                ": strain form, cells that the shell cuts integrated part by part)");
+      if (parameters.solver.method == StokesMethod::assembled)
+        run.included.push_back("assembled matrices and algebraic multigrid (Method assembled), in place of matrix-free operators and geometric multigrid");
       if (parameters.capsule.prestress != 0.)
         run.included.push_back("prestress (inflation by " + number(parameters.capsule.prestress) + ")");
       if (parameters.capsule.stress_free != StressFreeShape::initial)

@@ -83,7 +83,7 @@ namespace tanktread
   }
 
 
-  MonolithicPreconditioner::MonolithicPreconditioner(const StokesPreconditioner &stokes,
+  MonolithicPreconditioner::MonolithicPreconditioner(const StokesInverse        &stokes,
                                                      const LinearisedShells     &shells,
                                                      const ShellLayout          &layout,
                                                      const PressureJumpResponse &pressure_jumps,

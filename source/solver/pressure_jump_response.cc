@@ -17,11 +17,11 @@ namespace tanktread
   } // namespace
 
 
-  PressureJumpResponse::PressureJumpResponse(const FluidOperator        &fluid,
-                                             const StokesPreconditioner &preconditioner,
-                                             const Coupling             &coupling,
-                                             const double                volume,
-                                             KrylovBasis                &basis)
+  PressureJumpResponse::PressureJumpResponse(const FluidOperator &fluid,
+                                             const StokesInverse &preconditioner,
+                                             const Coupling      &coupling,
+                                             const double         volume,
+                                             KrylovBasis         &basis)
     : communicator_(preconditioner.space().mesh.communicator())
     , s_(coupling.n_capsules(), 0.)
   {

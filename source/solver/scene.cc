@@ -29,7 +29,7 @@ namespace tanktread
   Scene::Scene(SceneDescription description, const MPI_Comm communicator)
     : description_(std::move(description))
     , communicator_(communicator)
-    , fluid_(communicator, description_.box, description_.fluid_mesh)
+    , fluid_(communicator, description_.box, description_.fluid_mesh, description_.solver.method)
     , capsule_(description_.shape, quadrature(description_, fluid_.mesh()), description_.shell, description_.moduli, description_.stress_free)
     , elasticity_(capsule_.shell(), capsule_.topology(), communicator)
     , coupling_(capsule_, description_.centres.size(), description_.solver.interface)

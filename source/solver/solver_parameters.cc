@@ -25,6 +25,13 @@ namespace tanktread
       {{"plain", Interface::plain}, {"enriched", Interface::enriched}},
       "plain: finite-element consistent spreading and interpolation, first order in the cell size; enriched: with the kink of the velocity and the jump of the pressure "
       "at the shell in the cells that it cuts, second order.");
+    add_enum_parameter(
+      prm,
+      "Method",
+      method,
+      {{"matrix-free", StokesMethod::matrix_free}, {"assembled", StokesMethod::assembled}},
+      "How the linear solver treats the liquid. matrix-free: operators computed cell by cell, geometric multigrid. assembled: sparse matrices and algebraic multigrid "
+      "(Trilinos ML), the common way, for comparison: the same flow in more time and memory; only with 'Viscosity ratio' 1 and 'Reynolds number' 0.");
     prm.add_parameter("Newton tolerance",
                       newton_tolerance,
                       "Norm of the residual at which a time step is solved, as a velocity of the shell in a per unit of time.",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Part of Tanktread: where the nodes of the own numbering are, in space and in deal.II's numbering.
+// Part of Tanktread: where the nodes of the own numbering are, rough values there, and matrices in their order.
 
 #include <deal.II/fe/fe_tools.h>
 
@@ -7,46 +7,16 @@
 
 #include <cmath>
 #include <cstdint>
-#include <limits>
-#include <stdexcept>
 
 namespace tanktread::oracle
 {
-  using Index = dealii::types::global_dof_index;
-
-  std::vector<unsigned int>
-  dofs_of_nodes(const ScalarSpace &space, const NodeSpace &nodes)
+  std::vector<double>
+  lexicographic(const dealii::FullMatrix<double> &matrix, const unsigned int row_degree, const unsigned int column_degree)
   {
-    constexpr unsigned int    unknown = std::numeric_limits<unsigned int>::max();
-    const auto               &fe      = space.dofs().get_fe();
-    const auto                order   = dealii::FETools::lexicographic_to_hierarchic_numbering<3>(fe.degree);
-    const auto               &owned   = space.partitioner()->locally_owned_range();
-    std::vector<Index>        cell_dofs(fe.n_dofs_per_cell());
-    std::vector<unsigned int> result(nodes.n_owned(), unknown);
-    unsigned int              cell_number = 0;
-    for (const auto &cell : space.dofs().active_cell_iterators())
-      if (cell->is_locally_owned())
-        {
-          cell->get_dof_indices(cell_dofs);
-          const unsigned int *const cell_nodes = nodes.cell_nodes(cell_number++);
-          for (unsigned int a = 0; a < cell_dofs.size(); ++a)
-            {
-              const Index dof = cell_dofs[order[a]];
-              if (space.constraints().is_constrained(dof) || !owned.is_element(dof))
-                continue;
-              const unsigned int place = owned.index_within_set(dof);
-              if (cell_nodes[a] >= nodes.n_owned() || (result[cell_nodes[a]] != unknown && result[cell_nodes[a]] != place))
-                throw std::logic_error("A free degree of freedom and its node do not belong together.");
-              result[cell_nodes[a]] = place;
-            }
-        }
-    std::vector<char> used(owned.n_elements(), false);
-    for (const unsigned int place : result)
-      {
-        if (place == unknown || used[place])
-          throw std::logic_error("An owned node has no degree of freedom of its own.");
-        used[place] = true;
-      }
+    std::vector<double> result;
+    for (const unsigned int i : dealii::FETools::lexicographic_to_hierarchic_numbering<3>(row_degree))
+      for (const unsigned int j : dealii::FETools::lexicographic_to_hierarchic_numbering<3>(column_degree))
+        result.push_back(matrix(i, j));
     return result;
   }
 

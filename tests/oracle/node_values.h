@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Part of Tanktread: where the nodes of the own numbering are, in space and in deal.II's numbering.
+// Part of Tanktread: where the nodes of the own numbering are, rough values there, and matrices in their order.
 
 #ifndef tanktread_oracle_node_values_h
 #define tanktread_oracle_node_values_h
+
+#include <deal.II/lac/full_matrix.h>
 
 #include <tanktread/fluid/taylor_hood_space.h>
 
 namespace tanktread::oracle
 {
-  /** Degree of freedom, counted among the locally owned ones, of each owned node. Throws std::logic_error if that is not one to one. */
-  std::vector<unsigned int>
-  dofs_of_nodes(const ScalarSpace &space, const NodeSpace &nodes);
+  /** A matrix between functions of the degrees given, row by row with nodes in lexicographic order, as NodeSpace has them. */
+  std::vector<double>
+  lexicographic(const dealii::FullMatrix<double> &matrix, unsigned int row_degree, unsigned int column_degree);
 
   /** Positions of the owned nodes, along periodic axes in [-side/2, side/2). */
   std::vector<dealii::Point<3>>

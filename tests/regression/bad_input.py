@@ -166,8 +166,21 @@ CASES = {
         1,
         ["case.prm:2: Scene/Box faces has 'periodic' across x", "Scene/Flow = planar extension"],
     ),
+    "validate_assembled_with_two_viscosities": (
+        section("Scene", "set Viscosity ratio = 5") + section("Solver", "set Method = assembled"),
+        ["--validate", "case.prm"],
+        1,
+        ["case.prm:5: Solver/Method is assembled; allowed with Scene/Viscosity ratio = 5: matrix-free"],
+    ),
+    "validate_assembled_with_inertia": (
+        section("Scene", "set Reynolds number = 0.5") + section("Solver", "set Method = assembled"),
+        ["--validate", "case.prm"],
+        1,
+        ["case.prm:5: Solver/Method is assembled; allowed with Scene/Reynolds number = 0.5: matrix-free"],
+    ),
     # and, so that the cases above cannot pass with a program that refuses everything:
     "good_input": (section("Scene", "set End time = 1"), ["--validate", "case.prm"], 0, ["valid"]),
+    "good_method": (section("Solver", "set Method = assembled"), ["--validate", "case.prm"], 0, ["valid"]),
     "empty_file": ("", ["--validate", "case.prm"], 0, ["valid"]),
     "print_parameters": ("", ["--print-parameters"], 0, ["subsection Scene", "set Shear number G = 0.05"]),
     "version": ("", ["--version"], 0, ["Tanktread", "deal.II"]),

@@ -6,7 +6,7 @@
 #include <deal.II/fe/fe_values.h>
 
 #include <gtest/gtest.h>
-#include <oracle/assembled_stokes.h>
+#include <tanktread/fluid/assembled_stokes.h>
 #include <tanktread/fluid/fluid.h>
 
 #include "viscosity_examples.h"
@@ -96,10 +96,10 @@ TEST(Viscosity, ExcessStressOfAFlowThatIsNotPeriodic)
   fluid.space().reinit(test);
   oracle::set_rough(fluid.mesh(), *fluid.space().velocity, 1, test.block(velocity_block));
 
-  const oracle::AssembledStokes assembled(fluid.mesh());
-  oracle::ComponentVector       v;
+  const AssembledStokes assembled(fluid.space());
+  ComponentVector       v;
   assembled.reinit(v);
-  assembled.to_components(fluid.space(), test, v);
+  assembled.to_components(test, v);
   for (unsigned int c = 0; c < 3; ++c)
     {
       assembled.velocity().constraints().distribute(v.block(c));

@@ -3,13 +3,12 @@
 
 #include <deal.II/lac/trilinos_solver.h>
 
-#include <oracle/algebraic_preconditioner.h>
+#include <tanktread/fluid/algebraic_preconditioner.h>
 
 #include "full_arrays.h"
 #include "stokes_problem.h"
 
 using namespace tanktread;
-using oracle::ComponentVector;
 using oracle::sphere_points;
 
 namespace
@@ -78,7 +77,7 @@ namespace
     space.reinit(values);
     oracle::set_rough(space.mesh, *space.velocity, seed, weights.block(velocity_block));
     oracle::set_rough(space.mesh, *space.pressure, seed, weights.block(pressure_block));
-    problem.assembled.to_nodes(space, solution, values);
+    problem.assembled.to_nodes(solution, values);
     for (auto *vector : {&weights, &values}) // pressures are known up to a constant
       vector->block(pressure_block).add(-vector->block(pressure_block).mean_value());
     std::array<double, 2> result;
@@ -152,10 +151,10 @@ namespace
         oracle::set_rough(space.mesh, *space.velocity, seed, x.block(velocity_block));
         oracle::set_rough(space.mesh, *space.pressure, seed, x.block(pressure_block));
         problem.fluid.stokes().vmult(Ax, x);
-        problem.assembled.to_components(space, x, y);
+        problem.assembled.to_components(x, y);
         EXPECT_NEAR(y.l2_norm(), x.l2_norm(), 1e-13 * x.l2_norm());
         problem.assembled.vmult(Ay, y);
-        problem.assembled.to_nodes(space, Ay, difference);
+        problem.assembled.to_nodes(Ay, difference);
         EXPECT_NEAR(Ay.l2_norm(), difference.l2_norm(), 1e-13 * Ay.l2_norm()); // nothing is left at constrained degrees of freedom
         difference -= Ax;
         for (const unsigned int b : {velocity_block, pressure_block})
@@ -191,16 +190,60 @@ TEST(Stokes, AlgebraicMultigridFindsTheSameSolution)
   for (auto *vector : {&rhs, &x, &difference})
     problem.fluid.space().reinit(*vector);
   add_body_force(Manufactured(), problem.assembled, load);
-  problem.assembled.to_nodes(problem.fluid.space(), load, rhs);
+  problem.assembled.to_nodes(load, rhs);
   const LinearReport report = solve_fgmres(problem.fluid.stokes(), problem.fluid.preconditioner(), x, rhs, 1e-12, 200);
-  const LinearReport other  = solve_fgmres(problem.assembled, oracle::AlgebraicPreconditioner(problem.assembled), y, load, 1e-12, 400);
+  const LinearReport other  = solve_fgmres(problem.assembled, AlgebraicPreconditioner(problem.assembled), y, load, 1e-12, 400);
   EXPECT_TRUE(report.converged);
   EXPECT_TRUE(other.converged);
   if (is_root())
     std::cout << report.iterations << " iterations, with algebraic multigrid " << other.iterations << std::endl;
-  problem.assembled.to_nodes(problem.fluid.space(), y, difference);
+  problem.assembled.to_nodes(y, difference);
   difference -= x;
   EXPECT_LT(difference.block(velocity_block).linfty_norm(), 1e-10 * x.block(velocity_block).linfty_norm());
+}
+
+
+TEST(AlgebraicStokes, EqualsTheMatrixFreeOperator)
+{
+  Fluid fluid(MPI_COMM_WORLD, side, cells(0.5, 0.125));
+  fluid.adapt(sphere_points(Point(-1., 1., 0.1), 0.5));
+  const AlgebraicStokes  algebraic(fluid.space());
+  FluidBlockVector       x, y, z;
+  const TaylorHoodSpace &space = fluid.space();
+  for (auto *vector : {&x, &y, &z})
+    space.reinit(*vector);
+  oracle::set_rough(space.mesh, *space.velocity, 1, x.block(velocity_block));
+  oracle::set_rough(space.mesh, *space.pressure, 1, x.block(pressure_block));
+  fluid.stokes().vmult(y, x);
+  algebraic.map().vmult(z, x);
+  z -= y;
+  for (const unsigned int b : {velocity_block, pressure_block})
+    EXPECT_LT(z.block(b).linfty_norm(), 1e-12 * y.block(b).linfty_norm()) << "block " << b;
+}
+
+
+TEST(AlgebraicStokes, IterationsInAFluid)
+{
+  Fluid fluid(MPI_COMM_WORLD, side, cells(0.5, 0.125), StokesMethod::assembled);
+  for (const Point &centre : {Point(0.1, 0., -0.2), Point(-1., 1., 0.1)}) // its meshes change
+    {
+      fluid.adapt(sphere_points(centre, 0.5));
+      FluidBlockVector x, rhs, residual;
+      for (auto *vector : {&x, &rhs, &residual})
+        fluid.space().reinit(*vector);
+      oracle::set_rough(fluid.mesh(), *fluid.space().velocity, 1, rhs.block(velocity_block));
+      const LinearReport report = solve_fgmres(fluid.stokes(), fluid.preconditioner(), x, rhs, 1e-6, 200);
+      EXPECT_TRUE(report.converged);
+      EXPECT_LT(report.iterations, 40u);
+      StokesOperator(fluid.space()).vmult(residual, x);
+      residual -= rhs;
+      EXPECT_LT(residual.l2_norm(), 2e-6 * rhs.l2_norm());
+      if (is_root())
+        std::cout << report.iterations << " iterations" << std::endl;
+    }
+  fluid.set_shift(0.);
+  EXPECT_THROW(fluid.set_shift(1.), std::logic_error);
+  EXPECT_THROW(fluid.set_viscosity(Viscosity(std::vector<double>(27 * fluid.space().velocity->n_cells(), 2.), 1., {})), std::logic_error);
 }
 
 
@@ -214,7 +257,7 @@ TEST(Stokes, SolverDoesNotDependOnTheSizeOfTheLoad)
   space.reinit(rhs);
   problem.assembled.reinit(load);
   add_body_force(Manufactured(), problem.assembled, load);
-  problem.assembled.to_nodes(space, load, rhs);
+  problem.assembled.to_nodes(load, rhs);
   std::vector<unsigned int> iterations;
   for (const double size : {1., 1e14, 1e-14})
     {
@@ -240,7 +283,7 @@ TEST(Stokes, AgreesWithDirectSolver)
   space.reinit(x);
   problem.assembled.reinit(load);
   add_body_force(Manufactured(), problem.assembled, load);
-  problem.assembled.to_nodes(space, load, rhs);
+  problem.assembled.to_nodes(load, rhs);
   const LinearReport report = solve_fgmres(problem.fluid.stokes(), problem.fluid.preconditioner(), x, rhs, 1e-12, 200);
   EXPECT_TRUE(report.converged);
 

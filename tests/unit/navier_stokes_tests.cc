@@ -206,8 +206,8 @@ namespace
 
     struct Operator
     {
-      const StokesOperator &stokes;
-      const Inertia        &inertia;
+      const StokesMap &stokes;
+      const Inertia   &inertia;
 
       void
       vmult(FluidBlockVector &dst, const FluidBlockVector &src) const

@@ -2,8 +2,8 @@
 // Part of Tanktread: exact statements about the numbering of nodes and the interpolation from rung to rung.
 
 #include <gtest/gtest.h>
-#include <oracle/assembled_stokes.h>
 #include <oracle/geometric_transfer.h>
+#include <tanktread/fluid/assembled_stokes.h>
 #include <tanktread/fluid/laplace_operator.h>
 #include <tanktread/fluid/level_transfer.h>
 
@@ -145,10 +145,10 @@ TEST(NodeSpace, LoadAndStoreAreInverseToEachOther)
 
 TEST(NodeSpace, DiagonalIsThatOfTheAssembledMatrix)
 {
-  const oracle::ReferenceMatrices reference;
-  const std::vector<double>       laplace = oracle::lexicographic(reference.laplace, 2, 2), mass = oracle::lexicographic(reference.pressure_mass, 1, 1);
-  const auto                      expect_equal = [](const std::vector<double> &found, const ScalarSpace &space, const NodeSpace &nodes, const auto &matrix) {
-    const auto dofs = oracle::dofs_of_nodes(space, nodes);
+  const ReferenceMatrices   reference;
+  const std::vector<double> laplace = oracle::lexicographic(reference.laplace, 2, 2), mass = oracle::lexicographic(reference.pressure_mass, 1, 1);
+  const auto                expect_equal = [](const std::vector<double> &found, const ScalarSpace &space, const NodeSpace &nodes, const auto &matrix) {
+    const auto dofs = dofs_of_nodes(space, nodes);
     ASSERT_EQ(found.size(), dofs.size());
     for (unsigned int i = 0; i < dofs.size(); ++i)
       {
@@ -160,8 +160,8 @@ TEST(NodeSpace, DiagonalIsThatOfTheAssembledMatrix)
     {
       FluidMesh mesh(MPI_COMM_WORLD, scene.box, cells(scene.coarsest, scene.finest));
       mesh.adapt(scene.band);
-      const TaylorHoodSpace         space(mesh);
-      const oracle::AssembledStokes assembled(mesh);
+      const TaylorHoodSpace space(mesh);
+      const AssembledStokes assembled(space);
       expect_equal(space.velocity->diagonal(laplace, 1), assembled.velocity(), *space.velocity, assembled.laplace());
       expect_equal(LaplaceOperator<double>(*space.velocity).diagonal(), assembled.velocity(), *space.velocity, assembled.laplace());
       expect_equal(space.pressure->diagonal(mass, 3), assembled.pressure(), *space.pressure, assembled.pressure_mass());
@@ -187,7 +187,7 @@ namespace
                        const Array<double> &Pu)
   {
     const ScalarSpace from(coarse_mesh, 2, true), to(mesh, 2, true);
-    const auto        from_dofs = oracle::dofs_of_nodes(from, coarse), to_dofs = oracle::dofs_of_nodes(to, fine);
+    const auto        from_dofs = dofs_of_nodes(from, coarse), to_dofs = dofs_of_nodes(to, fine);
     double            result = 0.;
     for (unsigned int c = 0; c < 3; ++c)
       {

@@ -11,7 +11,8 @@
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/tria.h>
 
-#include <oracle/assembled_stokes.h>
+#include <oracle/node_values.h>
+#include <tanktread/fluid/assembled_stokes.h>
 #include <tanktread/fluid/cube_kernel.h>
 #include <tanktread/fluid/undisturbed_flow.h>
 
@@ -74,7 +75,7 @@ namespace tanktread
   {
     UnitCube()
     {
-      const oracle::ReferenceMatrices matrices;
+      const ReferenceMatrices matrices;
       laplace       = oracle::lexicographic(matrices.laplace, 2, 2);
       pressure_mass = oracle::lexicographic(matrices.pressure_mass, 1, 1);
       for (unsigned int c = 0; c < 3; ++c)

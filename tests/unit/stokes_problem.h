@@ -10,7 +10,7 @@
 #include <deal.II/fe/fe_values.h>
 
 #include <gtest/gtest.h>
-#include <oracle/assembled_stokes.h>
+#include <tanktread/fluid/assembled_stokes.h>
 #include <tanktread/fluid/compat.h>
 #include <tanktread/fluid/fluid.h>
 #include <tanktread/fluid/linear_solver.h>
@@ -26,7 +26,7 @@ namespace tanktread
     Problem(const MPI_Comm comm, const Box &box, const double coarse, const double fine, const std::vector<dealii::Point<3>> &band)
       : fluid(comm, box, parameters(coarse, fine))
       , adapted(fluid.adapt(band))
-      , assembled(fluid.mesh())
+      , assembled(fluid.space())
     {}
 
     static FluidMeshParameters
@@ -40,12 +40,12 @@ namespace tanktread
 
     /** Solves for `solution`, given on the faces with prescribed velocity, and returns nodal values with all constraints resolved and ghosts set. */
     template <typename Solution>
-    oracle::ComponentVector
+    ComponentVector
     solve(const Solution &solution, LinearReport &report) const;
 
-    Fluid                   fluid;
-    bool                    adapted;
-    oracle::AssembledStokes assembled;
+    Fluid           fluid;
+    bool            adapted;
+    AssembledStokes assembled;
   };
 
   inline bool
@@ -59,10 +59,10 @@ namespace tanktread
 
   /** Nodal interpolant at the nodes of faces with prescribed velocity, zero elsewhere, constraints other than those of the faces resolved. */
   template <typename Solution>
-  oracle::ComponentVector
-  face_values(const Solution &solution, const oracle::AssembledStokes &stokes)
+  ComponentVector
+  face_values(const Solution &solution, const AssembledStokes &stokes)
   {
-    oracle::ComponentVector lift;
+    ComponentVector lift;
     stokes.reinit(lift);
     const auto                                  &dofs = stokes.velocity().dofs();
     std::vector<dealii::types::global_dof_index> indices(27);
@@ -95,7 +95,7 @@ namespace tanktread
 
   template <typename Solution>
   void
-  add_body_force(const Solution &solution, const oracle::AssembledStokes &stokes, oracle::ComponentVector &rhs)
+  add_body_force(const Solution &solution, const AssembledStokes &stokes, ComponentVector &rhs)
   {
     const dealii::QGauss<3>                      quadrature(4);
     dealii::FEValues<3>                          values(stokes.velocity().dofs().get_fe(),
@@ -119,25 +119,64 @@ namespace tanktread
     rhs.compress(dealii::VectorOperation::add);
   }
 
+  /**
+   * rhs -= operator applied to a field with its own wall values.
+   *
+   * @param field full nodal values, all constraints resolved, ghost values up to date; need not vanish at the walls.
+   */
+  inline void
+  subtract_applied(const AssembledStokes &stokes, const ComponentVector &field, ComponentVector &rhs)
+  {
+    const ReferenceMatrices                      reference;
+    std::vector<dealii::types::global_dof_index> u_dofs(27), p_dofs(8);
+    dealii::Vector<double>                       u_local(27), u_load(27), p_load(8), p_local(8), product(8);
+    for (const auto &cell : stokes.velocity().dofs().active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          const double h = stokes.mesh().cell_size(cell->level());
+          cell->get_dof_indices(u_dofs);
+          dealii::DoFHandler<3>::active_cell_iterator(&stokes.mesh().triangulation(), cell->level(), cell->index(), &stokes.pressure().dofs())
+            ->get_dof_indices(p_dofs);
+          p_load = 0.;
+          for (unsigned int j = 0; j < 8; ++j)
+            p_local[j] = field.block(3)(p_dofs[j]);
+          for (unsigned int c = 0; c < 3; ++c)
+            {
+              for (unsigned int a = 0; a < 27; ++a)
+                u_local[a] = field.block(c)(u_dofs[a]);
+              reference.laplace.vmult(u_load, u_local);
+              u_load *= -h;
+              reference.divergence[c].vmult(product, u_local);
+              p_load.add(h * h, product);
+              dealii::Vector<double> gradient(27);
+              reference.divergence[c].Tvmult(gradient, p_local);
+              u_load.add(h * h, gradient);
+              stokes.velocity().constraints().distribute_local_to_global(u_load, u_dofs, rhs.block(c));
+            }
+          stokes.pressure().constraints().distribute_local_to_global(p_load, p_dofs, rhs.block(3));
+        }
+    rhs.compress(dealii::VectorOperation::add);
+  }
+
   template <typename Solution>
-  oracle::ComponentVector
+  ComponentVector
   Problem::solve(const Solution &solution, LinearReport &report) const
   {
-    oracle::ComponentVector load, correction, result = face_values(solution, assembled);
+    ComponentVector load, correction, result = face_values(solution, assembled);
     assembled.reinit(load);
     assembled.reinit(correction);
     add_body_force(solution, assembled, load);
-    assembled.subtract_applied(result, load);
+    subtract_applied(assembled, result, load);
 
     FluidBlockVector rhs, x;
     fluid.space().reinit(rhs);
     fluid.space().reinit(x);
-    assembled.to_nodes(fluid.space(), load, rhs);
+    assembled.to_nodes(load, rhs);
     // What the faces let in and out cancels only up to quadrature: take the part out that no velocity can balance.
     rhs.block(pressure_block).add(-rhs.block(pressure_block).mean_value());
     report = solve_fgmres(fluid.stokes(), fluid.preconditioner(), x, rhs, 1e-12, 200);
 
-    assembled.to_components(fluid.space(), x, correction);
+    assembled.to_components(x, correction);
     result.zero_out_ghost_values();
     for (unsigned int b = 0; b < 4; ++b)
       {
@@ -151,7 +190,7 @@ namespace tanktread
   /** L2 norms of the errors of velocity and pressure, the pressure's mean removed. */
   template <typename Solution>
   std::pair<double, double>
-  errors(const Solution &exact, const oracle::AssembledStokes &stokes, const oracle::ComponentVector &solution)
+  errors(const Solution &exact, const AssembledStokes &stokes, const ComponentVector &solution)
   {
     const dealii::QGauss<3> quadrature(5);
     const auto              flags = dealii::update_values | dealii::update_quadrature_points | dealii::update_JxW_values;

@@ -6,7 +6,7 @@
 #include <deal.II/fe/fe_values.h>
 
 #include <gtest/gtest.h>
-#include <oracle/assembled_stokes.h>
+#include <tanktread/fluid/assembled_stokes.h>
 #include <tanktread/fluid/fluid.h>
 #include <tanktread/fluid/linear_solver.h>
 
@@ -61,9 +61,9 @@ namespace
 
   /** (sigma, grad v) for the stress of that solution, which is the load that has it as the weak solution. */
   FluidVector
-  manufactured_load(const oracle::AssembledStokes &stokes, const TaylorHoodSpace &space)
+  manufactured_load(const AssembledStokes &stokes, const TaylorHoodSpace &space)
   {
-    oracle::ComponentVector load;
+    ComponentVector load;
     stokes.reinit(load);
     const dealii::QGauss<3>                      quadrature(5);
     dealii::FEValues<3>                          values(stokes.velocity().dofs().get_fe(),
@@ -93,14 +93,14 @@ namespace
     load.compress(dealii::VectorOperation::add);
     FluidBlockVector result;
     space.reinit(result);
-    stokes.to_nodes(space, load, result);
+    stokes.to_nodes(load, result);
     return result.block(velocity_block);
   }
 
 
   /** L2 errors of velocity and pressure. */
   std::array<double, 2>
-  errors(const oracle::AssembledStokes &stokes, oracle::ComponentVector &solution)
+  errors(const AssembledStokes &stokes, ComponentVector &solution)
   {
     const dealii::QGauss<3> quadrature(5);
     const auto              flags = dealii::update_values | dealii::update_quadrature_points | dealii::update_JxW_values;
@@ -146,7 +146,7 @@ namespace
 
   /** Adds 2 (mu eps(u), eps(v)) - least (grad u^T, grad v) cell by cell, u being the velocity blocks of `y`. */
   void
-  add_strain_form(const oracle::AssembledStokes &assembled, const Field &mu, const double least, const oracle::ComponentVector &y, oracle::ComponentVector &Ay)
+  add_strain_form(const AssembledStokes &assembled, const Field &mu, const double least, const ComponentVector &y, ComponentVector &Ay)
   {
     const dealii::QGauss<3>                        quadrature(3);
     dealii::FEValues<3>                            fe(assembled.velocity().dofs().get_fe(),
@@ -185,9 +185,9 @@ TEST(Viscosity, StrainFormIsThatOfDealii)
       fluid.adapt(oracle::sphere_points(centre, 0.4));
       const Field mu = sphere(7., centre, 0.4, 2.);
       fluid.set_viscosity(viscosity_from(fluid.mesh(), mu, 0.3));
-      const TaylorHoodSpace        &space = fluid.space();
-      const oracle::AssembledStokes assembled(fluid.mesh());
-      FluidBlockVector              x, Ax, expected;
+      const TaylorHoodSpace &space = fluid.space();
+      const AssembledStokes  assembled(fluid.space());
+      FluidBlockVector       x, Ax, expected;
       for (auto *vector : {&x, &Ax, &expected})
         space.reinit(*vector);
       oracle::set_rough(fluid.mesh(), *space.velocity, 1, x.block(velocity_block));
@@ -195,11 +195,11 @@ TEST(Viscosity, StrainFormIsThatOfDealii)
       fluid.stokes().vmult(Ax, x);
 
       // 2 (mu eps(u), eps(v)) - 0.3 (grad u^T, grad v) cell by cell; the pressure's part is that of the assembled matrices.
-      oracle::ComponentVector y, p_only, Ay;
+      ComponentVector y, p_only, Ay;
       for (auto *vector : {&y, &p_only, &Ay})
         assembled.reinit(*vector);
-      assembled.to_components(space, x, y);
-      oracle::ComponentVector Dy(Ay);
+      assembled.to_components(x, y);
+      ComponentVector Dy(Ay);
       assembled.vmult(Dy, y); // its pressure block is -div u
       p_only.block(3) = y.block(3);
       assembled.vmult(Ay, p_only);
@@ -210,7 +210,7 @@ TEST(Viscosity, StrainFormIsThatOfDealii)
           y.block(c).update_ghost_values();
         }
       add_strain_form(assembled, mu, 0.3, y, Ay);
-      assembled.to_nodes(space, Ay, expected);
+      assembled.to_nodes(Ay, expected);
       expected -= Ax;
       for (const unsigned int b : {velocity_block, pressure_block})
         EXPECT_LT(expected.block(b).linfty_norm(), 1e-13 * Ax.block(b).linfty_norm()) << "block " << b << ", centre " << centre;
@@ -244,16 +244,16 @@ TEST(Viscosity, ManufacturedOrders)
       Fluid fluid(MPI_COMM_WORLD, 2., cells(h, 0.5 * h));
       fluid.adapt(oracle::sphere_points(Point(-1., 1., 0.1), 0.5));
       fluid.set_viscosity(viscosity_from(fluid.mesh(), Manufactured::viscosity, std::exp(-1.8)));
-      const oracle::AssembledStokes assembled(fluid.mesh());
-      FluidBlockVector              rhs, x;
+      const AssembledStokes assembled(fluid.space());
+      FluidBlockVector      rhs, x;
       fluid.space().reinit(rhs);
       fluid.space().reinit(x);
       rhs.block(velocity_block) = manufactured_load(assembled, fluid.space());
       const LinearReport report = solve_fgmres(fluid.stokes(), fluid.preconditioner(), x, rhs, 1e-8, 200);
       EXPECT_TRUE(report.converged);
-      oracle::ComponentVector solution;
+      ComponentVector solution;
       assembled.reinit(solution);
-      assembled.to_components(fluid.space(), x, solution);
+      assembled.to_components(x, solution);
       e.push_back(errors(assembled, solution));
       if (is_root())
         std::cout << "coarsest cell " << h << ": error u " << e.back()[0] << ", p " << e.back()[1] << ", " << report.iterations << " iterations" << std::endl;

@@ -5,6 +5,7 @@
 #define tanktread_fluid_stokes_operator_h
 
 #include <tanktread/fluid/cube_kernel.h>
+#include <tanktread/fluid/stokes_system.h>
 #include <tanktread/fluid/taylor_hood_space.h>
 #include <tanktread/fluid/viscosity.h>
 
@@ -19,7 +20,7 @@ namespace tanktread
    * and does nothing to a solenoidal u:
    * (mu grad u, grad v) + ((mu - m) grad u^T, grad v), positive definite point by point, and what it was where mu = m.
    */
-  class StokesOperator
+  class StokesOperator : public StokesMap
   {
   public:
     /** Keeps `space` by reference. */
@@ -29,9 +30,8 @@ namespace tanktread
     void
     set_viscosity(const Viscosity &viscosity);
 
-    /** dst = [A, -B^T; -B, 0] src on blocks 0 and 1; blocks from 2 on are not touched. Collective. */
     void
-    vmult(FluidBlockVector &dst, const FluidBlockVector &src) const;
+    vmult(FluidBlockVector &dst, const FluidBlockVector &src) const override;
 
     const TaylorHoodSpace &
     space() const

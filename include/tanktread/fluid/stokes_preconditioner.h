@@ -20,7 +20,7 @@ namespace tanktread
    * Where inertia puts s times the mass matrix to A, the Schur complement's inverse is about mu M_p^{-1} + s L_p^{-1} (Cahouet and Chabard), L_p the pressures'
    * Laplace matrix, and one V-cycle stands for L_p^{-1}.
    */
-  class StokesPreconditioner
+  class StokesPreconditioner : public StokesInverse
   {
   public:
     StokesPreconditioner(const StokesPreconditioner &) = delete; // its parts know each other's places
@@ -38,12 +38,11 @@ namespace tanktread
     void
     set_viscosity(const Viscosity &viscosity);
 
-    /** dst = P^{-1} src on blocks 0 and 1. Collective. @param timings where to add what its parts take, or null. */
     void
-    vmult(FluidBlockVector &dst, const FluidBlockVector &src, Timings *timings = nullptr) const;
+    vmult(FluidBlockVector &dst, const FluidBlockVector &src, Timings *timings = nullptr) const override;
 
     const TaylorHoodSpace &
-    space() const
+    space() const override
     {
       return space_;
     }

@@ -31,7 +31,7 @@ namespace tanktread
      * All are kept by reference. @param timings where to add what the parts take, or null. @param inertia linearised, or null. @param jumps_follow whether the
      * viscous part of the jumps changes with the flow.
      */
-    MonolithicOperator(const StokesOperator   &stokes,
+    MonolithicOperator(const StokesMap        &stokes,
                        const LinearisedShells &shells,
                        const ShellLayout      &layout,
                        Timings                *timings      = nullptr,
@@ -59,7 +59,7 @@ namespace tanktread
     vmult(FluidBlockVector &dst, const FluidBlockVector &src) const;
 
   private:
-    const StokesOperator   &stokes_;
+    const StokesMap        &stokes_;
     const LinearisedShells &shells_;
     const ShellLayout      &layout_;
     const Inertia *const    inertia_;
@@ -76,7 +76,7 @@ namespace tanktread
   {
   public:
     /** All are kept by reference. @param timings where to add what the parts take, or null. */
-    MonolithicPreconditioner(const StokesPreconditioner &stokes,
+    MonolithicPreconditioner(const StokesInverse        &stokes,
                              const LinearisedShells     &shells,
                              const ShellLayout          &layout,
                              const PressureJumpResponse &pressure_jumps,
@@ -86,7 +86,7 @@ namespace tanktread
     vmult(FluidBlockVector &dst, const FluidBlockVector &src) const;
 
   private:
-    const StokesPreconditioner &stokes_;
+    const StokesInverse        &stokes_;
     const LinearisedShells     &shells_;
     const ShellLayout          &layout_;
     const PressureJumpResponse &pressure_jumps_;

@@ -16,8 +16,8 @@ namespace tanktread
   /** The Stokes operator with the derivative of inertia, if there is any. */
   struct FluidOperator
   {
-    const StokesOperator &stokes;
-    const Inertia        *inertia = nullptr; // linearised
+    const StokesMap &stokes;
+    const Inertia   *inertia = nullptr; // linearised
 
     void
     vmult(FluidBlockVector &dst, const FluidBlockVector &src) const
@@ -46,7 +46,7 @@ namespace tanktread
      * @param coupling has its points where the shells are. @param volume of a capsule over the mean viscosity, in place of s where that is not found. @param
      * basis memory that may be used. Collective.
      */
-    PressureJumpResponse(const FluidOperator &fluid, const StokesPreconditioner &preconditioner, const Coupling &coupling, double volume, KrylovBasis &basis);
+    PressureJumpResponse(const FluidOperator &fluid, const StokesInverse &preconditioner, const Coupling &coupling, double volume, KrylovBasis &basis);
 
     /** pi of all capsules for the rows r_p of the pressures and r_pi of the fluxes. Collective. */
     std::vector<double>

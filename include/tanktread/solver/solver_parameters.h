@@ -5,6 +5,7 @@
 #define tanktread_solver_solver_parameters_h
 
 #include <tanktread/coupling/interface.h>
+#include <tanktread/fluid/stokes_method.h>
 
 namespace dealii
 {
@@ -24,6 +25,7 @@ namespace tanktread
   {
     TimeCoupling coupling              = TimeCoupling::implicit_newton;
     Interface    interface             = Interface::enriched;
+    StokesMethod method                = StokesMethod::matrix_free;
     double       newton_tolerance      = 1e-5;
     double       volume_tolerance      = 1e-9;
     double       linear_tolerance      = 0.1;

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Part of Tanktread: block preconditioner of the assembled Stokes equations with algebraic multigrid, the base line of the geometric one.
+// Part of Tanktread: block preconditioner of the assembled Stokes equations with algebraic multigrid.
 
-#ifndef tanktread_oracle_algebraic_preconditioner_h
-#define tanktread_oracle_algebraic_preconditioner_h
+#ifndef tanktread_fluid_algebraic_preconditioner_h
+#define tanktread_fluid_algebraic_preconditioner_h
 
 #include <deal.II/lac/diagonal_matrix.h>
 #include <deal.II/lac/precondition.h>
 #include <deal.II/lac/trilinos_precondition.h>
 
-#include "assembled_stokes.h"
+#include <tanktread/fluid/assembled_stokes.h>
 
-namespace tanktread::oracle
+namespace tanktread
 {
   /** Upper block-triangular: z_p = -M_p^{-1} r_p by a Chebyshev polynomial, then one V-cycle of Trilinos ML for each velocity component of r_u + B^T z_p. */
   class AlgebraicPreconditioner
@@ -36,6 +36,6 @@ namespace tanktread::oracle
     Chebyshev                                 pressure_mass_inverse_;
     mutable FluidVector                       velocity_scratch_;
   };
-} // namespace tanktread::oracle
+} // namespace tanktread
 
 #endif

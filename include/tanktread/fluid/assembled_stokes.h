@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Part of Tanktread: the Stokes equations assembled by deal.II, what the matrix-free ones are compared with.
+// Part of Tanktread: the Stokes equations assembled by deal.II.
 
-#ifndef tanktread_oracle_assembled_stokes_h
-#define tanktread_oracle_assembled_stokes_h
+#ifndef tanktread_fluid_assembled_stokes_h
+#define tanktread_fluid_assembled_stokes_h
 
 #include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
@@ -12,7 +12,7 @@
 #include <array>
 #include <vector>
 
-namespace tanktread::oracle
+namespace tanktread
 {
   /** Integrals over the unit cube by deal.II's FEValues, in deal.II's order of shape functions; a cube of side h scales them by h, h^2 and h^3. */
   struct ReferenceMatrices
@@ -24,23 +24,23 @@ namespace tanktread::oracle
     dealii::FullMatrix<double>                pressure_mass; // 8 x 8: M_i M_j
   };
 
-  /** A matrix of those between functions of the degrees given, row by row with nodes in lexicographic order, as NodeSpace has them. */
-  std::vector<double>
-  lexicographic(const dealii::FullMatrix<double> &matrix, unsigned int row_degree, unsigned int column_degree);
+  /** Degree of freedom, counted among the locally owned ones, of each owned node. Throws std::logic_error if that is not one to one. */
+  std::vector<unsigned int>
+  dofs_of_nodes(const ScalarSpace &space, const NodeSpace &nodes);
 
   /** Four blocks u_x, u_y, u_z, p in the numbering of deal.II's DoFHandlers, constrained degrees of freedom among them. */
   using ComponentVector = dealii::LinearAlgebra::distributed::BlockVector<double>;
 
   /**
    * (grad u, grad v) - (p, div v), -(q, div u) as Trilinos matrices: one scalar matrix for all three velocity components, three divergences. Rows and columns
-   * of constrained
-   * degrees of freedom are condensed; those of the velocities carry a positive diagonal entry. Of NodeSpace it knows only in the two conversions.
+   * of constrained degrees of freedom are condensed; those of the velocities carry a positive diagonal entry. Of NodeSpace it knows only in the two
+   * conversions, so that the tests can compare the matrix-free operators with it.
    */
   class AssembledStokes
   {
   public:
-    /** Keeps `mesh` by reference, and DoFHandlers attached to it. Collective. */
-    explicit AssembledStokes(const FluidMesh &mesh);
+    /** Keeps the mesh of `space` by reference, and DoFHandlers attached to it: to be gone before the mesh changes. Collective. */
+    explicit AssembledStokes(const TaylorHoodSpace &space);
 
     /** Makes `vector` a zero vector of four blocks. */
     void
@@ -54,21 +54,13 @@ namespace tanktread::oracle
     void
     add_pressure_gradient(ComponentVector &dst, const FluidVector &pressure) const;
 
-    /**
-     * rhs -= operator applied to a field with its own wall values.
-     *
-     * @param field full nodal values, all constraints resolved, ghost values up to date; need not vanish at the walls.
-     */
+    /** Free values from the own numbering to deal.II's; constrained entries become zero. */
     void
-    subtract_applied(const ComponentVector &field, ComponentVector &rhs) const;
+    to_components(const FluidBlockVector &from, ComponentVector &to) const;
 
-    /** Free values from the own numbering to deal.II's; constrained entries become zero. `space` is on the same mesh. */
+    /** The same way back, constrained entries being left out; blocks from 2 on are not touched. */
     void
-    to_components(const TaylorHoodSpace &space, const FluidBlockVector &from, ComponentVector &to) const;
-
-    /** The same way back, constrained entries being left out. */
-    void
-    to_nodes(const TaylorHoodSpace &space, const ComponentVector &from, FluidBlockVector &to) const;
+    to_nodes(const ComponentVector &from, FluidBlockVector &to) const;
 
     const FluidMesh &
     mesh() const
@@ -104,12 +96,13 @@ namespace tanktread::oracle
 
     const FluidMesh                                      &mesh_;
     ScalarSpace                                           velocity_, pressure_;
+    std::vector<unsigned int>                             velocity_dofs_, pressure_dofs_; // of the nodes
     ReferenceMatrices                                     reference_;
     dealii::TrilinosWrappers::SparseMatrix                laplace_;
     std::array<dealii::TrilinosWrappers::SparseMatrix, 3> divergence_;
     dealii::TrilinosWrappers::SparseMatrix                pressure_mass_;
     mutable FluidVector                                   velocity_scratch_, pressure_scratch_;
   };
-} // namespace tanktread::oracle
+} // namespace tanktread
 
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Part of Tanktread: the Stokes equations assembled by deal.II, what the matrix-free ones are compared with.
+// Part of Tanktread: the Stokes equations assembled by deal.II.
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_tools.h>
@@ -8,12 +8,15 @@
 #include <deal.II/grid/tria.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
-#include "assembled_stokes.h"
-#include "node_values.h"
+#include <tanktread/fluid/assembled_stokes.h>
 
-namespace tanktread::oracle
+#include <limits>
+#include <stdexcept>
+
+namespace tanktread
 {
-  using Indices = std::vector<dealii::types::global_dof_index>;
+  using Index   = dealii::types::global_dof_index;
+  using Indices = std::vector<Index>;
 
   constexpr unsigned int pressure_component = 3; // of ComponentVector
 
@@ -49,13 +52,39 @@ namespace tanktread::oracle
   }
 
 
-  std::vector<double>
-  lexicographic(const dealii::FullMatrix<double> &matrix, const unsigned int row_degree, const unsigned int column_degree)
+  std::vector<unsigned int>
+  dofs_of_nodes(const ScalarSpace &space, const NodeSpace &nodes)
   {
-    std::vector<double> result;
-    for (const unsigned int i : dealii::FETools::lexicographic_to_hierarchic_numbering<3>(row_degree))
-      for (const unsigned int j : dealii::FETools::lexicographic_to_hierarchic_numbering<3>(column_degree))
-        result.push_back(matrix(i, j));
+    constexpr unsigned int    unknown = std::numeric_limits<unsigned int>::max();
+    const auto               &fe      = space.dofs().get_fe();
+    const auto                order   = dealii::FETools::lexicographic_to_hierarchic_numbering<3>(fe.degree);
+    const auto               &owned   = space.partitioner()->locally_owned_range();
+    std::vector<Index>        cell_dofs(fe.n_dofs_per_cell());
+    std::vector<unsigned int> result(nodes.n_owned(), unknown);
+    unsigned int              cell_number = 0;
+    for (const auto &cell : space.dofs().active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          cell->get_dof_indices(cell_dofs);
+          const unsigned int *const cell_nodes = nodes.cell_nodes(cell_number++);
+          for (unsigned int a = 0; a < cell_dofs.size(); ++a)
+            {
+              const Index dof = cell_dofs[order[a]];
+              if (space.constraints().is_constrained(dof) || !owned.is_element(dof))
+                continue;
+              const unsigned int place = owned.index_within_set(dof);
+              if (cell_nodes[a] >= nodes.n_owned() || (result[cell_nodes[a]] != unknown && result[cell_nodes[a]] != place))
+                throw std::logic_error("A free degree of freedom and its node do not belong together.");
+              result[cell_nodes[a]] = place;
+            }
+        }
+    std::vector<char> used(owned.n_elements(), false);
+    for (const unsigned int place : result)
+      {
+        if (place == unknown || used[place])
+          throw std::logic_error("An owned node has no degree of freedom of its own.");
+        used[place] = true;
+      }
     return result;
   }
 
@@ -90,10 +119,12 @@ namespace tanktread::oracle
   } // namespace
 
 
-  AssembledStokes::AssembledStokes(const FluidMesh &mesh)
-    : mesh_(mesh)
-    , velocity_(mesh, 2, true)
-    , pressure_(mesh, 1, false)
+  AssembledStokes::AssembledStokes(const TaylorHoodSpace &space)
+    : mesh_(space.mesh)
+    , velocity_(mesh_, 2, true)
+    , pressure_(mesh_, 1, false)
+    , velocity_dofs_(dofs_of_nodes(velocity_, *space.velocity))
+    , pressure_dofs_(dofs_of_nodes(pressure_, *space.pressure))
     , velocity_scratch_(velocity_.partitioner())
     , pressure_scratch_(pressure_.partitioner())
   {
@@ -178,34 +209,6 @@ namespace tanktread::oracle
 
 
   void
-  AssembledStokes::subtract_applied(const ComponentVector &field, ComponentVector &rhs) const
-  {
-    dealii::Vector<double> u_local(27), u_load(27), p_load(8), p_local(8), product(8);
-    for_owned_cells(*this, [&](const double h, const Indices &u_dofs, const Indices &p_dofs) {
-      p_load = 0.;
-      for (unsigned int j = 0; j < 8; ++j)
-        p_local[j] = field.block(pressure_component)(p_dofs[j]);
-      for (unsigned int c = 0; c < 3; ++c)
-        {
-          for (unsigned int a = 0; a < 27; ++a)
-            u_local[a] = field.block(c)(u_dofs[a]);
-          reference_.laplace.vmult(u_load, u_local);
-          u_load *= -h;
-          reference_.divergence[c].vmult(product, u_local);
-          p_load.add(h * h, product);
-          dealii::Vector<double> gradient(27);
-          reference_.divergence[c].Tvmult(gradient, p_local);
-          u_load.add(h * h, gradient);
-          velocity_.constraints().distribute_local_to_global(u_load, u_dofs, rhs.block(c));
-        }
-      pressure_.constraints().distribute_local_to_global(p_load, p_dofs, rhs.block(pressure_component));
-    });
-    for (unsigned int b = 0; b < 4; ++b)
-      rhs.block(b).compress(dealii::VectorOperation::add);
-  }
-
-
-  void
   AssembledStokes::reinit(ComponentVector &vector) const
   {
     vector.reinit(4);
@@ -216,26 +219,24 @@ namespace tanktread::oracle
 
 
   void
-  AssembledStokes::to_components(const TaylorHoodSpace &space, const FluidBlockVector &from, ComponentVector &to) const
+  AssembledStokes::to_components(const FluidBlockVector &from, ComponentVector &to) const
   {
-    const auto u_dofs = dofs_of_nodes(velocity_, *space.velocity), p_dofs = dofs_of_nodes(pressure_, *space.pressure);
     to = 0.;
-    for (unsigned int i = 0; i < u_dofs.size(); ++i)
+    for (unsigned int i = 0; i < velocity_dofs_.size(); ++i)
       for (unsigned int c = 0; c < 3; ++c)
-        to.block(c).local_element(u_dofs[i]) = from.block(velocity_block).local_element(3 * i + c);
-    for (unsigned int i = 0; i < p_dofs.size(); ++i)
-      to.block(pressure_component).local_element(p_dofs[i]) = from.block(pressure_block).local_element(i);
+        to.block(c).local_element(velocity_dofs_[i]) = from.block(velocity_block).local_element(3 * i + c);
+    for (unsigned int i = 0; i < pressure_dofs_.size(); ++i)
+      to.block(pressure_component).local_element(pressure_dofs_[i]) = from.block(pressure_block).local_element(i);
   }
 
 
   void
-  AssembledStokes::to_nodes(const TaylorHoodSpace &space, const ComponentVector &from, FluidBlockVector &to) const
+  AssembledStokes::to_nodes(const ComponentVector &from, FluidBlockVector &to) const
   {
-    const auto u_dofs = dofs_of_nodes(velocity_, *space.velocity), p_dofs = dofs_of_nodes(pressure_, *space.pressure);
-    for (unsigned int i = 0; i < u_dofs.size(); ++i)
+    for (unsigned int i = 0; i < velocity_dofs_.size(); ++i)
       for (unsigned int c = 0; c < 3; ++c)
-        to.block(velocity_block).local_element(3 * i + c) = from.block(c).local_element(u_dofs[i]);
-    for (unsigned int i = 0; i < p_dofs.size(); ++i)
-      to.block(pressure_block).local_element(i) = from.block(pressure_component).local_element(p_dofs[i]);
+        to.block(velocity_block).local_element(3 * i + c) = from.block(c).local_element(velocity_dofs_[i]);
+    for (unsigned int i = 0; i < pressure_dofs_.size(); ++i)
+      to.block(pressure_block).local_element(i) = from.block(pressure_component).local_element(pressure_dofs_[i]);
   }
-} // namespace tanktread::oracle
+} // namespace tanktread

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Part of Tanktread: block preconditioner of the assembled Stokes equations with algebraic multigrid, the base line of the geometric one.
+// Part of Tanktread: block preconditioner of the assembled Stokes equations with algebraic multigrid.
 
-#include "algebraic_preconditioner.h"
+#include <tanktread/fluid/algebraic_preconditioner.h>
 
-namespace tanktread::oracle
+namespace tanktread
 {
   AlgebraicPreconditioner::AlgebraicPreconditioner(const AssembledStokes &stokes)
     : stokes_(stokes)
@@ -52,4 +52,4 @@ namespace tanktread::oracle
         apply_inverse_laplace(dst.block(c), velocity_scratch_);
       }
   }
-} // namespace tanktread::oracle
+} // namespace tanktread
