@@ -3,6 +3,7 @@
 
 #include <tanktread/base/mpi_errors.h>
 #include <tanktread/solver/implicit_shells.h>
+#include <tanktread/surface/assembly_pattern.h>
 
 #include <algorithm>
 #include <array>
@@ -16,6 +17,16 @@ namespace tanktread
     /** A V-cycle that leaves more than this of an error is no match for factors. */
     constexpr double largest_convergence_factor = 0.7;
   } // namespace
+
+
+  ImplicitOperator
+  implicit_operator(SparseMatrix Z, SparseMatrix K_pi, const Eigen::Matrix3d &flow_gradient, const double tau)
+  {
+    ImplicitOperator result{std::move(Z), std::move(K_pi), Eigen::Matrix3d::Identity() - tau * flow_gradient};
+    result.S.coeffs() *= tau;
+    add_for_three_components(result.Z, result.S, result.drift);
+    return result;
+  }
 
 
   ImplicitShells::ImplicitShells(const Capsule &capsule, const ShellLayout &layout, SolverMemory &memory)

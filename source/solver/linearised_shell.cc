@@ -92,12 +92,10 @@ namespace tanktread
   ImplicitOperator
   LinearisedShell::implicit_operator(const Linearisation &choice) const
   {
-    ImplicitOperator result{inverse_mobility(capsule_.surface(), shell_->x(), choice.h, choice.viscosity),
-                            stiffness_,
-                            Eigen::Matrix3d::Identity() - tau_ * gradient_about(choice.flow, shell_->x())};
-    result.S.coeffs() *= tau_;
-    add_for_three_components(result.Z, result.S, result.drift);
-    return result;
+    return tanktread::implicit_operator(inverse_mobility(capsule_.surface(), shell_->x(), choice.h, choice.viscosity),
+                                        stiffness_,
+                                        gradient_about(choice.flow, shell_->x()),
+                                        tau_);
   }
 
 

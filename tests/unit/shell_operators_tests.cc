@@ -133,7 +133,7 @@ TEST(ImplicitShells, AreKeptWhileTheyServe)
   EXPECT_FALSE(implicit_shells.serves(0.1));
   Eigen::Matrix3d g = Eigen::Matrix3d::Zero();
   g(0, 2)           = 3.;
-  implicit_shells.renew({{Z, K, g}}, 0.1);
+  implicit_shells.renew({implicit_operator(Z, K, g, 0.1)}, 0.1);
   for (const auto &[tau, serves] : {std::pair<double, bool>{0.1, true}, {0.149, true}, {0.151, false}, {0.067, true}, {0.066, false}})
     EXPECT_EQ(implicit_shells.serves(tau), serves) << tau;
 
@@ -153,7 +153,7 @@ TEST(ImplicitShells, AreKeptWhileTheyServe)
   implicit_shells.watch({true, 10, 1., 1e-2});
   implicit_shells.watch({true, 24, 1., 1e-4}); // 22 + 1 allowed, but 5 a decade
   EXPECT_FALSE(implicit_shells.serves(0.1));
-  implicit_shells.renew({{Z, K, g}}, 0.1);
+  implicit_shells.renew({implicit_operator(Z, K, g, 0.1)}, 0.1);
   implicit_shells.watch({true, 10, 1., 1e-2});
   implicit_shells.watch({true, 22, 1., 1e-4});
   EXPECT_TRUE(implicit_shells.serves(0.1));
@@ -164,7 +164,7 @@ TEST(ImplicitShells, AreKeptWhileTheyServe)
   SparseMatrix minus_Z = scene.capsule().surface().pattern().block_matrix();
   add_for_three_components(Z, minus_Z);
   minus_Z *= -1.;
-  EXPECT_THROW(implicit_shells.renew({{Z, minus_Z, Eigen::Matrix3d::Zero()}}, 1.), NumericalError);
+  EXPECT_THROW(implicit_shells.renew({implicit_operator(Z, minus_Z, Eigen::Matrix3d::Zero(), 1.)}, 1.), NumericalError);
   EXPECT_FALSE(implicit_shells.serves(1.));
 }
 
@@ -181,7 +181,7 @@ TEST(ImplicitShells, AreFactorsWhereAVCycleDoesNotConverge)
     return layout.owns(0) ? (Z * velocity + nodal(K * flat(velocity)) - force).norm() / force.norm() : 0.;
   };
   const SparseMatrix weak = random_blocks(scene.capsule().surface(), 1e-5);
-  implicit_shells.renew({{Z, weak, Eigen::Matrix3d::Zero()}}, 1.);
+  implicit_shells.renew({implicit_operator(Z, weak, Eigen::Matrix3d::Zero(), 1.)}, 1.);
   EXPECT_LT(defect(weak), 0.1);
   if (layout.owns(0))
     {
@@ -193,7 +193,7 @@ TEST(ImplicitShells, AreFactorsWhereAVCycleDoesNotConverge)
   SparseMatrix indefinite = scene.capsule().surface().pattern().block_matrix();
   add_for_three_components(laplace_beltrami(scene.capsule().surface(), scene.x()), indefinite);
   indefinite *= -0.03;
-  implicit_shells.renew({{Z, indefinite, Eigen::Matrix3d::Zero()}}, 1.);
+  implicit_shells.renew({implicit_operator(Z, indefinite, Eigen::Matrix3d::Zero(), 1.)}, 1.);
   EXPECT_LT(defect(indefinite), 1e-10);
   EXPECT_TRUE(implicit_shells.serves(1.));
 }

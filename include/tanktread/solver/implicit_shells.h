@@ -15,6 +15,10 @@
 
 namespace tanktread
 {
+  /** Of a linearisation with Z, K_pi and grad u_inf for a step of length tau. */
+  ImplicitOperator
+  implicit_operator(SparseMatrix Z, SparseMatrix K_pi, const Eigen::Matrix3d &flow_gradient, double tau);
+
   /**
    * For each capsule the map Z_tau S^{-1}, S = Z_tau + tau K_pi, Z_tau = Z (1 - tau grad u_inf), by which LinearisedShells multiplies the force row of the Newton
    * system: Z, tau and
