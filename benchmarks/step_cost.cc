@@ -9,18 +9,16 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <tanktread/base/exceptions.h>
 #include <tanktread/base/mpi_errors.h>
 
 #include "algebraic_base_line.h"
 #include "capsule_scene.h"
 #include "measurement.h"
+#include "step_cost_options.h"
 
-#include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <numeric>
-#include <sstream>
 
 using namespace tanktread;
 
@@ -28,16 +26,6 @@ namespace
 {
   constexpr double       relative_tolerance = 1e-6;
   constexpr unsigned int max_iterations     = 200;
-
-  struct Options
-  {
-    std::vector<unsigned int> cells = {32, 64, 128};
-    double                    dt    = 0.1;
-    bool                      ml    = false;
-    bool                      steps = false; // and nothing else, with the enriched interface
-    double                    ratio = 1.;    // of the viscosities, for these
-  };
-
 
   /** Iterations and time of a linear solve. */
   Entry
@@ -261,7 +249,7 @@ namespace
   /** Stokes solves and implicit solves with the plain interface. The scene goes before steps are measured: their memory is their own. */
   template <typename Progress>
   void
-  measure_solves(const unsigned int cells, const Options &options, const Progress &progress, Measurement &result)
+  measure_solves(const unsigned int cells, const StepCostOptions &options, const Progress &progress, Measurement &result)
   {
     forget_peak_memory();
     Scene          scene(sheared_sphere(cells), MPI_COMM_WORLD);
@@ -281,7 +269,7 @@ namespace
 
 
   Measurement
-  measure(const unsigned int cells, const Options &options)
+  measure(const unsigned int cells, const StepCostOptions &options)
   {
     Measurement result;
     result.mesh         = "10a/" + std::to_string(cells);
@@ -310,54 +298,10 @@ namespace
   }
 
 
-  /** Numbers of at least 8 between commas; none if the text is something else. */
-  std::vector<unsigned int>
-  read_cells(const std::string &text)
-  {
-    std::vector<unsigned int> result;
-    std::istringstream        stream(text);
-    for (unsigned int number; stream >> number && number >= 8; stream.get())
-      {
-        result.push_back(number);
-        if (stream.peek() != ',')
-          return stream.eof() ? result : std::vector<unsigned int>();
-      }
-    return {};
-  }
-
-
-  Options
-  parse(const std::vector<std::string> &words)
-  {
-    Options options;
-    for (std::size_t i = 0; i < words.size(); ++i)
-      {
-        if (words[i] == "--ml" || words[i] == "--steps")
-          {
-            (words[i] == "--ml" ? options.ml : options.steps) = true;
-            continue;
-          }
-        const std::string name = words[i], value = ++i < words.size() ? words[i] : "";
-        if (name == "--cells")
-          options.cells = read_cells(value);
-        else if (name == "--dt")
-          options.dt = std::atof(value.c_str());
-        else if (name == "--viscosity-ratio")
-          options.ratio = std::atof(value.c_str());
-        else
-          options.cells.clear();
-        if (options.cells.empty() || !(options.dt > 0.) || !(options.ratio > 0.))
-          throw InputError("step_cost: got '" + name + " " + value +
-                           "'; allowed: --cells 32,64,128 (at least 8 each), --dt 0.1, --ml, --steps and --viscosity-ratio 1");
-      }
-    return options;
-  }
-
-
   void
   work(const std::vector<std::string> &words)
   {
-    const Options            options = parse(words);
+    const StepCostOptions    options = parse(words);
     std::vector<Measurement> all;
     for (const unsigned int cells : options.cells)
       all.push_back(measure(cells, options));

@@ -34,8 +34,8 @@ namespace tanktread
     auto
     operator*(const Eigen::MatrixBase<Derived> &x) const
     {
-      const Field<Derived> in = x;
-      Field<Derived>       out(rows(), in.cols());
+      const Field<Derived> &in = x.derived(); // no copy of what is one
+      Field<Derived>        out(rows(), in.cols());
       apply(in.rows(), in.cols(), in.data(), out.data());
       return out;
     }
@@ -45,8 +45,8 @@ namespace tanktread
     auto
     transposed_times(const Eigen::MatrixBase<Derived> &y) const
     {
-      const Field<Derived> in  = y;
-      Field<Derived>       out = Field<Derived>::Zero(stencils_.n_control_points, in.cols());
+      const Field<Derived> &in  = y.derived();
+      Field<Derived>        out = Field<Derived>::Zero(stencils_.n_control_points, in.cols());
       apply_transposed(in.rows(), in.cols(), in.data(), out.data());
       return out;
     }
