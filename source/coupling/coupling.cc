@@ -271,12 +271,12 @@ namespace tanktread
 
 
   void
-  Coupling::carry_pressure(const ShellFields &g, const std::vector<VertexSides *> &sides, FluidBlockVector &fields) const
+  Coupling::carry_pressure(const ShellFields &f, const std::vector<VertexSides *> &sides, FluidBlockVector &fields) const
   {
     if (jumps_->are_none() || !moved_)
       return;
     ExtendedForces forces;
-    extend_whole(g, forces);
+    extend_whole(density(f), forces);
     for (unsigned int c = 0; c < n_capsules(); ++c)
       jumps_->carry_pressure(c, forces, *sides[c], fields);
   }

@@ -181,8 +181,8 @@ namespace tanktread
   }
 
 
-  std::array<double, 8>
-  CutCellForms::pressure_loads(const double h, const VertexForces &f) const
+  TANKTREAD_CLONES std::array<double, 8>
+                   CutCellForms::pressure_loads(const double h, const VertexForces &f) const
   {
     std::array<double, 8> result;
     for (unsigned int j = 0; j < 8; ++j)
@@ -196,7 +196,7 @@ namespace tanktread
   }
 
 
-  void
+  TANKTREAD_CLONES void
   CutCellForms::add_response(const double h, const std::array<Vector4, 27> &u, const std::array<double, 8> &p, VertexForces &r) const
   {
     add_node_response(laplace, pressure, h, u, r);
@@ -206,7 +206,7 @@ namespace tanktread
   }
 
 
-  void
+  TANKTREAD_CLONES void
   CutCellForms::add_self_response(const double h, const VertexForces &f, VertexForces &r) const
   {
     for (unsigned int v = 0; v < 8; ++v)

@@ -2,6 +2,7 @@
 // Part of Tanktread: between the control points of one shell and its points in the fluid.
 
 #include <tanktread/coupling/shell_transfer.h>
+#include <tanktread/surface/stencil_products.h>
 
 #include <algorithm>
 #include <array>
@@ -53,6 +54,7 @@ namespace tanktread
       const std::array<const ControlPoints *, n_fields> fields_;
       std::vector<Vector4>                             &memory_;
     };
+
   } // namespace
 
 
@@ -86,7 +88,7 @@ namespace tanktread
     for (unsigned int r = range_.begin; r < range_.end; ++r)
       {
         const unsigned int face = point(r) / n_face;
-        if (local_faces_.empty() || local_faces_.back().face != face)
+        if (local_faces_.empty() || local_faces_.back().face != face || point(r) != point(r - 1) + 1)
           local_faces_.push_back({face, r, r});
         ++local_faces_.back().end;
       }
@@ -96,13 +98,14 @@ namespace tanktread
   void
   ShellTransfer::set_point_forces(const ControlPoints &density, std::vector<double> &forces) const
   {
-    const Eigen::VectorXd &weights = capsule_.weights();
-    FaceValues<1>          values(surface_, {&density}, face_);
+    const unsigned int n = surface_.support_size();
+    face_.resize(n);
     for (const auto &[face, begin, end] : local_faces_)
       {
-        values.reinit(face);
-        for (unsigned int r = begin; r < end; ++r)
-          (weights[point(r)] * values.at(point(r))[0]).store(&forces[3 * std::size_t(r)]);
+        const int *const support = surface_.support(face);
+        for (unsigned int i = 0; i < n; ++i)
+          face_[i] = Vector4(density.data() + 3 * std::size_t(support[i]));
+        stencil_products({capsule_.weighted_stencil(point(begin)), n, end - begin, n}, face_.data(), &forces[3 * std::size_t(begin)]);
       }
   }
 
@@ -110,23 +113,12 @@ namespace tanktread
   void
   ShellTransfer::add_moments(const std::vector<double> &values, double *const moments) const
   {
-    const Eigen::VectorXd &weights = capsule_.weights();
-    const unsigned int     n       = surface_.support_size();
+    const unsigned int n = surface_.support_size();
     for (const auto &[face, begin, end] : local_faces_)
-      {
-        const int *const support = surface_.support(face);
-        face_.clear();
-        for (unsigned int r = begin; r < end; ++r)
-          face_.push_back(weights[point(r)] * Vector4(&values[3 * std::size_t(r)]));
-        for (unsigned int i = 0; i < n; ++i)
-          {
-            Vector4 sum;
-            for (unsigned int r = begin; r < end; ++r)
-              sum += surface_.stencils(point(r))[i] * face_[r - begin];
-            double *const row = moments + 3 * std::size_t(support[i]);
-            (Vector4(row) + sum).store(row);
-          }
-      }
+      add_transposed_stencil_products({capsule_.weighted_stencil(point(begin)), n, end - begin, n},
+                                      &values[3 * std::size_t(begin)],
+                                      surface_.support(face),
+                                      moments);
   }
 
 

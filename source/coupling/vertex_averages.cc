@@ -94,8 +94,7 @@ namespace tanktread
     VertexForces              result;
     for (unsigned int v = 0; v < 8; ++v)
       {
-        const double *const value = &values[4 * std::size_t(nodes[v])];
-        result[v]                 = {value[0], value[1], value[2], value[3]};
+        result[v] = Vector4::of_four(&values[4 * std::size_t(nodes[v])]);
       }
     return result;
   }
@@ -108,8 +107,7 @@ namespace tanktread
     for (unsigned int v = 0; v < 8; ++v)
       {
         double *const value = &values[4 * std::size_t(nodes[v])];
-        for (unsigned int c = 0; c < 4; ++c)
-          value[c] += forces[v][c];
+        (Vector4::of_four(value) + forces[v]).store_four(value);
       }
   }
 

@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <tanktread/base/exceptions.h>
+#include <tanktread/base/target_clones.h>
 #include <tanktread/base/vector4.h>
 #include <tanktread/fluid/point_interpolation.h>
 #include <tanktread/fluid/quadratic_element.h>
@@ -120,6 +121,24 @@ namespace tanktread
     }
 
 
+    /** Values at n points of a cell, those numbered `points`; positions and results are by number. */
+    TANKTREAD_CLONES void
+    evaluate_all(const CellValues &u, const dealii::Point<3> *const positions, const unsigned int *const points, const unsigned int n, double *const values)
+    {
+      for (unsigned int i = 0; i < n; ++i)
+        evaluate(u, Shapes(positions[points[i]], 1.), values + 3 * std::size_t(points[i]));
+    }
+
+
+    /** The transpose: adds to `load`. */
+    TANKTREAD_CLONES void
+    integrate_all(const dealii::Point<3> *const positions, const unsigned int *const points, const unsigned int n, const double *const forces, CellValues &load)
+    {
+      for (unsigned int i = 0; i < n; ++i)
+        integrate(Shapes(positions[points[i]], 1.), forces + 3 * std::size_t(points[i]), load);
+    }
+
+
     /** Velocities at the nodes of a cell from those at owned and ghost nodes. */
     void
     gather(const NodeSpace &space, const unsigned int cell, const double *const values, CellValues &result)
@@ -212,7 +231,7 @@ namespace tanktread
 
   template <typename Function>
   void
-  PointInterpolation::for_groups(const FluidBlockVector &velocity, const Function &evaluate_at) const
+  PointInterpolation::for_groups(const FluidBlockVector &velocity, const Function &evaluate_in) const
   {
     const NodeSpace   &nodes = *space_.velocity;
     const FluidVector &u     = velocity.block(velocity_block);
@@ -221,11 +240,21 @@ namespace tanktread
     for (const Group &group : groups_)
       {
         gather(nodes, group.cell, u.begin(), local);
-        const double inverse_size = 1. / nodes.cell_sizes()[group.cell];
-        for (unsigned int i = group.begin; i < group.end; ++i)
-          evaluate_at(order_[i], local, Shapes(unit_[order_[i]], inverse_size));
+        evaluate_in(group, local);
       }
     u.zero_out_ghost_values();
+  }
+
+
+  template <typename Function>
+  void
+  PointInterpolation::for_points(const FluidBlockVector &velocity, const Function &evaluate_at) const
+  {
+    for_groups(velocity, [&](const Group &group, const CellValues &u) {
+      const double inverse_size = 1. / space_.velocity->cell_sizes()[group.cell];
+      for (unsigned int i = group.begin; i < group.end; ++i)
+        evaluate_at(order_[i], u, Shapes(unit_[order_[i]], inverse_size));
+    });
   }
 
 
@@ -233,7 +262,8 @@ namespace tanktread
   PointInterpolation::values(const FluidBlockVector &velocity, std::vector<double> &values) const
   {
     values.resize(3 * local_points_.size());
-    for_groups(velocity, [&](const unsigned int r, const CellValues &u, const Shapes &shapes) { evaluate(u, shapes, &values[3 * r]); });
+    for_groups(velocity,
+               [&](const Group &group, const CellValues &u) { evaluate_all(u, unit_.data(), &order_[group.begin], group.end - group.begin, values.data()); });
   }
 
 
@@ -241,7 +271,7 @@ namespace tanktread
   PointInterpolation::gradients(const FluidBlockVector &velocity, std::vector<double> &gradients) const
   {
     gradients.resize(9 * local_points_.size());
-    for_groups(velocity, [&](const unsigned int r, const CellValues &u, const Shapes &shapes) { evaluate_gradient(u, shapes, nullptr, &gradients[9 * r]); });
+    for_points(velocity, [&](const unsigned int r, const CellValues &u, const Shapes &shapes) { evaluate_gradient(u, shapes, nullptr, &gradients[9 * r]); });
   }
 
 
@@ -250,7 +280,7 @@ namespace tanktread
   {
     values.resize(3 * local_points_.size());
     gradients.resize(9 * local_points_.size());
-    for_groups(velocity,
+    for_points(velocity,
                [&](const unsigned int r, const CellValues &u, const Shapes &shapes) { evaluate_gradient(u, shapes, &values[3 * r], &gradients[9 * r]); });
   }
 
@@ -267,15 +297,11 @@ namespace tanktread
           for (Vector4 &node : line)
             node = Vector4();
         const double inverse_size = 1. / nodes.cell_sizes()[group.cell];
-        for (unsigned int i = group.begin; i < group.end; ++i)
-          {
-            const unsigned int r = order_[i];
-            const Shapes       shapes(unit_[r], inverse_size);
-            if (moments.empty())
-              integrate(shapes, &forces[3 * r], local);
-            else
-              integrate(shapes, &forces[3 * r], &moments[9 * r], local);
-          }
+        if (moments.empty())
+          integrate_all(unit_.data(), &order_[group.begin], group.end - group.begin, forces.data(), local);
+        else
+          for (unsigned int i = group.begin; i < group.end; ++i)
+            integrate(Shapes(unit_[order_[i]], inverse_size), &forces[3 * order_[i]], &moments[9 * order_[i]], local);
         scatter(nodes, group.cell, local, f.begin());
       }
     f.compress(dealii::VectorOperation::add);

@@ -194,7 +194,7 @@ namespace tanktread
     std::vector<VertexSides *> sides;
     for (CapsuleState &capsule : state.capsules)
       sides.push_back(&capsule.sides);
-    coupling_.carry_pressure(coupling_.density(forces(state)), sides, state.fluid);
+    coupling_.carry_pressure(forces(state), sides, state.fluid);
   }
 
 

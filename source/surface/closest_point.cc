@@ -2,6 +2,7 @@
 // Part of Tanktread: distance to the surface from its second-order shape at nearby points.
 
 #include <tanktread/surface/closest_point.h>
+#include <tanktread/surface/stencil_products.h>
 
 #include <cmath>
 
@@ -12,17 +13,18 @@ namespace tanktread
   {
     const unsigned int          n = surface.support_size(), n_q = surface.n_points_per_face();
     std::vector<QuadraticPatch> result(surface.n_points());
-    Eigen::MatrixX3d            local(n, 3);
+    std::vector<Vector4>        local(n);
+    double                      values[6][3];
     for (unsigned int face = 0; face < surface.n_faces(); ++face)
       {
         const int *const support = surface.support(face);
         for (unsigned int i = 0; i < n; ++i)
-          local.row(i) = x.row(support[i]);
+          local[i] = Vector4(x.data() + 3 * std::size_t(support[i]));
         for (unsigned int q = face * n_q; q < (face + 1) * n_q; ++q)
           {
-            const Eigen::Map<const Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor>> stencils(surface.stencils(q), 6, n);
-            const Eigen::Matrix<double, 6, 3>                                                 values = stencils * local;
-            result[q] = {values.row(0), values.row(1), values.row(2), values.row(3), values.row(4), values.row(5)};
+            stencil_products({surface.stencils(q), n, 6, n}, local.data(), values[0]);
+            const auto vector = [&](const unsigned int k) { return Eigen::Vector3d(values[k]); };
+            result[q]         = {vector(0), vector(1), vector(2), vector(3), vector(4), vector(5)};
           }
       }
     return result;

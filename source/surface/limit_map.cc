@@ -2,6 +2,7 @@
 // Part of Tanktread: a linear map from control points to points of the surface, by stencils that the points of a face share.
 
 #include <tanktread/surface/limit_map.h>
+#include <tanktread/surface/stencil_products.h>
 
 #include <stdexcept>
 #include <string>
@@ -11,46 +12,54 @@ namespace tanktread
 {
   namespace
   {
-    template <int n_columns>
-    using Block = Eigen::Matrix<double, Eigen::Dynamic, n_columns, n_columns == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
+    const int *
+    support(const LimitMap::Stencils &s, const unsigned int face)
+    {
+      return s.supports + std::size_t(face) * s.n;
+    }
 
-    using Rows = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>, 0, Eigen::OuterStride<>>;
-
-    /** Stencils of the points of a face, a row each. */
-    Rows
+    /** Stencils of the points of a face. */
+    StencilRows
     rows_of(const LimitMap::Stencils &s, const unsigned int face)
     {
-      return {s.values + std::size_t(face) * s.n_points_per_face * s.stride, s.n_points_per_face, s.n, Eigen::OuterStride<>(s.stride)};
+      return {s.values + std::size_t(face) * s.n_points_per_face * s.stride, s.stride, s.n_points_per_face, s.n};
     }
 
-    template <int n_columns>
     void
-    multiply(const LimitMap::Stencils &s, const double *const x, double *const y)
+    multiply_numbers(const LimitMap::Stencils &s, const double *const x, double *y)
     {
-      Block<n_columns> of_face(s.n, n_columns);
+      for (unsigned int f = 0; f < s.n_faces; ++f)
+        for (unsigned int p = 0; p < s.n_points_per_face; ++p, ++y)
+          {
+            const double *const row = rows_of(s, f).begin + std::size_t(p) * s.stride;
+            *y                      = 0.;
+            for (unsigned int i = 0; i < s.n; ++i)
+              *y += row[i] * x[support(s, f)[i]];
+          }
+    }
+
+    void
+    multiply_vectors(const LimitMap::Stencils &s, const double *const x, double *const y)
+    {
+      std::vector<Vector4> of_face(s.n);
       for (unsigned int f = 0; f < s.n_faces; ++f)
         {
           for (unsigned int i = 0; i < s.n; ++i)
-            for (int c = 0; c < n_columns; ++c)
-              of_face(i, c) = x[std::size_t(n_columns) * s.supports[std::size_t(f) * s.n + i] + c];
-          Eigen::Map<Block<n_columns>> points(y + std::size_t(f) * s.n_points_per_face * n_columns, s.n_points_per_face, n_columns);
-          points.noalias() = rows_of(s, f).lazyProduct(of_face);
+            of_face[i] = Vector4(x + 3 * std::size_t(support(s, f)[i]));
+          stencil_products(rows_of(s, f), of_face.data(), y + 3 * std::size_t(f) * s.n_points_per_face);
         }
     }
 
-    template <int n_columns>
     void
-    add_transposed_product(const LimitMap::Stencils &s, const double *const y, double *const x)
+    add_transposed_numbers(const LimitMap::Stencils &s, const double *y, double *const x)
     {
-      Block<n_columns> of_face(s.n, n_columns);
       for (unsigned int f = 0; f < s.n_faces; ++f)
-        {
-          const Eigen::Map<const Block<n_columns>> points(y + std::size_t(f) * s.n_points_per_face * n_columns, s.n_points_per_face, n_columns);
-          of_face.noalias() = rows_of(s, f).transpose().lazyProduct(points);
-          for (unsigned int i = 0; i < s.n; ++i)
-            for (int c = 0; c < n_columns; ++c)
-              x[std::size_t(n_columns) * s.supports[std::size_t(f) * s.n + i] + c] += of_face(i, c);
-        }
+        for (unsigned int p = 0; p < s.n_points_per_face; ++p, ++y)
+          {
+            const double *const row = rows_of(s, f).begin + std::size_t(p) * s.stride;
+            for (unsigned int i = 0; i < s.n; ++i)
+              x[support(s, f)[i]] += row[i] * *y;
+          }
     }
 
     void
@@ -68,9 +77,9 @@ namespace tanktread
   {
     expect_size(n_rows, n_columns, stencils_.n_control_points);
     if (n_columns == 1)
-      multiply<1>(stencils_, x, y);
+      multiply_numbers(stencils_, x, y);
     else
-      multiply<3>(stencils_, x, y);
+      multiply_vectors(stencils_, x, y);
   }
 
 
@@ -79,9 +88,10 @@ namespace tanktread
   {
     expect_size(n_rows, n_columns, rows());
     if (n_columns == 1)
-      add_transposed_product<1>(stencils_, y, x);
+      add_transposed_numbers(stencils_, y, x);
     else
-      add_transposed_product<3>(stencils_, y, x);
+      for (unsigned int f = 0; f < stencils_.n_faces; ++f)
+        add_transposed_stencil_products(rows_of(stencils_, f), y + 3 * std::size_t(f) * stencils_.n_points_per_face, support(stencils_, f), x);
   }
 
 

@@ -4,6 +4,8 @@
 #ifndef tanktread_base_vector4_h
 #define tanktread_base_vector4_h
 
+#include <cstring>
+
 namespace tanktread
 {
   /**
@@ -23,15 +25,33 @@ namespace tanktread
     {}
     /** The three numbers at `values` and a zero. */
     explicit Vector4(const double *values)
-      : Vector4(values[0], values[1], values[2])
-    {}
+      : zw_{values[2], 0.}
+    {
+      // Both at once: a register that is put together from two halves is stored as two, and waits for them when it is loaded again.
+      std::memcpy(&xy_, values, sizeof(xy_));
+    }
 
+    /** The four numbers at `values`. */
+    static Vector4
+    of_four(const double *values)
+    {
+      Vector4 result;
+      std::memcpy(&result.xy_, values, sizeof(result.xy_));
+      std::memcpy(&result.zw_, values + 2, sizeof(result.zw_));
+      return result;
+    }
+
+    void
+    store_four(double *values) const
+    {
+      std::memcpy(values, &xy_, sizeof(xy_));
+      std::memcpy(values + 2, &zw_, sizeof(zw_));
+    }
     /** Writes the first three. */
     void
     store(double *values) const
     {
-      values[0] = xy_[0];
-      values[1] = xy_[1];
+      std::memcpy(values, &xy_, sizeof(xy_));
       values[2] = zw_[0];
     }
     double

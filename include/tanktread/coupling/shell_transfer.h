@@ -98,7 +98,7 @@ namespace tanktread
     }
 
   private:
-    /** Consecutive local points [begin, end) in one face. */
+    /** Local points [begin, end) in one face, consecutive on the shell too. */
     struct FacePoints
     {
       unsigned int face, begin, end;

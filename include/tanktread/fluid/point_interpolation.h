@@ -80,10 +80,14 @@ namespace tanktread
     void
     sort_by_cell();
 
+    /** Calls evaluate_in(group, nodal velocities of its cell) for every group. */
+    template <typename Function>
+    void
+    for_groups(const FluidBlockVector &velocity, const Function &evaluate_in) const;
     /** Calls evaluate_at(r, nodal velocities of its cell, shape functions) for every local point r. */
     template <typename Function>
     void
-    for_groups(const FluidBlockVector &velocity, const Function &evaluate_at) const;
+    for_points(const FluidBlockVector &velocity, const Function &evaluate_at) const;
 
     const TaylorHoodSpace        &space_;
     CellLocator                   locator_;

@@ -9,6 +9,7 @@
 #include <tanktread/surface/mass_inverse.h>
 
 #include <optional>
+#include <vector>
 
 namespace tanktread
 {
@@ -79,6 +80,12 @@ namespace tanktread
     {
       return weights_;
     }
+    /** Row q of W S: what support_size() control points of its face weigh at point q of coupling_surface(). */
+    const double *
+    weighted_stencil(const unsigned int q) const
+    {
+      return weighted_stencils_.data() + std::size_t(q) * coupling_surface_.support_size();
+    }
     /** M, NP x NP. */
     const SparseMatrix &
     mass() const
@@ -106,14 +113,15 @@ namespace tanktread
     }
 
   private:
-    FittedShape        shape_;
-    SubdivisionSurface surface_;
-    Shell              shell_;
-    SubdivisionSurface coupling_surface_;
-    Eigen::VectorXd    weights_;
-    SparseMatrix       mass_;
-    MassInverse        mass_inverse_;
-    double             volume_;
+    FittedShape         shape_;
+    SubdivisionSurface  surface_;
+    Shell               shell_;
+    SubdivisionSurface  coupling_surface_;
+    Eigen::VectorXd     weights_;
+    std::vector<double> weighted_stencils_;
+    SparseMatrix        mass_;
+    MassInverse         mass_inverse_;
+    double              volume_;
   };
 } // namespace tanktread
 

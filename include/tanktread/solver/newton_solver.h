@@ -143,8 +143,7 @@ namespace tanktread
     double
     motion_accuracy(const double norm) const
     {
-      // What is left of the residual after an iteration is to be small against its square, and against the tolerance.
-      return std::min(0.01, 0.01 * std::max(norm, parameters_.newton_tolerance));
+      return std::min(0.01, 0.1 * forcing_term(norm)); // small against what the linear solve leaves
     }
     unsigned int
     max_linear_iterations(double tau) const;
