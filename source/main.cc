@@ -5,6 +5,7 @@
 #include <tanktread/base/mpi_errors.h>
 #include <tanktread/base/version.h>
 #include <tanktread/simulation/simulation.h>
+#include <tanktread/simulation/study.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -45,7 +46,10 @@ namespace
     if (command_line.action == tanktread::CommandLine::Action::run)
       {
         const tanktread::Parameters parameters = tanktread::read_parameters(command_line.file, command_line.overrides);
-        tanktread::Simulation(parameters, MPI_COMM_WORLD).run();
+        if (parameters.study.is_wanted())
+          tanktread::Study(parameters, command_line.overrides, MPI_COMM_WORLD).run();
+        else
+          tanktread::Simulation(parameters, MPI_COMM_WORLD).run();
       }
   }
 } // namespace

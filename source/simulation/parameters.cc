@@ -11,7 +11,6 @@
 #include <deal.II/base/parameter_handler.h>
 
 #include <filesystem>
-#include <functional>
 #include <sstream>
 
 namespace tanktread
@@ -46,6 +45,12 @@ namespace tanktread
         message << "Solver/Method is assembled; allowed with Scene/Viscosity ratio = " << scene.viscosity_ratio << ": matrix-free";
       if (!message.str().empty())
         throw InputError(message.str());
+    }
+
+    void
+    check_study(const Parameters &parameters)
+    {
+      parameters.study.check(parameters.capsule.shape == Shape::file ? -1 : int(parameters.shell_mesh.level), parameters.time.steady_tolerance > 0.);
     }
 
     void
@@ -92,22 +97,14 @@ namespace tanktread
     time.add_parameters(prm);
     solver.add_parameters(prm);
     output.add_parameters(prm);
+    study.add_parameters(prm);
   }
 
   void
   Parameters::check(const ParameterSource &source) const
   {
-    const std::vector<std::function<void()>> checks = {[&] { scene.check(); },
-                                                       [&] { capsule.check(); },
-                                                       [&] { check_mesh_file(capsule); },
-                                                       [&] { shell.check(); },
-                                                       [&] { check_solver(scene, solver); },
-                                                       [&] { fluid_mesh.check(scene.box()); },
-                                                       [&] { output.check(); },
-                                                       [&] { check_output_folder(output.directory); }};
-
     std::string errors;
-    for (const auto &check : checks)
+    const auto  collect = [&](const auto &check) {
       try
         {
           check();
@@ -116,6 +113,16 @@ namespace tanktread
         {
           errors += (errors.empty() ? "" : "\n") + source.locate(error.what());
         }
+    };
+    collect([&] { scene.check(); });
+    collect([&] { capsule.check(); });
+    collect([&] { check_mesh_file(capsule); });
+    collect([&] { shell.check(); });
+    collect([&] { check_solver(scene, solver); });
+    collect([&] { fluid_mesh.check(scene.box()); });
+    collect([&] { output.check(); });
+    collect([&] { check_study(*this); });
+    collect([&] { check_output_folder(output.directory); });
     if (!errors.empty())
       throw InputError(errors);
     try

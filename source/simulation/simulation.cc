@@ -81,10 +81,10 @@ namespace tanktread
   } // namespace
 
 
-  Simulation::Simulation(const Parameters &parameters, const MPI_Comm communicator)
+  Simulation::Simulation(const Parameters &parameters, const MPI_Comm communicator, std::ostream &screen)
     : parameters_(parameters)
     , communicator_(communicator)
-    , log_(dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
+    , log_(dealii::Utilities::MPI::this_mpi_process(communicator) == 0, screen)
     , scene_(scene_description(parameters), communicator)
     , memory_(parameters.time)
     , stepper_(parameters.time, parameters.solver.coupling, parameters.scene.end_time, scene_, memory_.steps, log_)

@@ -9,6 +9,7 @@
 #include <tanktread/simulation/output_parameters.h>
 #include <tanktread/simulation/placement_parameters.h>
 #include <tanktread/simulation/scene_parameters.h>
+#include <tanktread/simulation/study_parameters.h>
 #include <tanktread/simulation/time_stepping.h>
 #include <tanktread/solver/solver_parameters.h>
 #include <tanktread/surface/capsule_shape.h>
@@ -43,6 +44,7 @@ namespace tanktread
     TimeParameters         time;
     SolverParameters       solver;
     OutputParameters       output;
+    StudyParameters        study;
 
     std::string file; // name of the parameter file
     std::string used; // all parameters with the values used, as a parameter file that can be read again

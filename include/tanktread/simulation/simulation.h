@@ -10,6 +10,7 @@
 #include <tanktread/simulation/run_memory.h>
 #include <tanktread/simulation/time_stepper.h>
 
+#include <iostream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,8 +21,11 @@ namespace tanktread
   class Simulation
   {
   public:
-    /** Everything that can be wrong about the input has been checked by `parameters.check()`; nothing is written before run(). */
-    Simulation(const Parameters &parameters, MPI_Comm communicator);
+    /**
+     * Everything that can be wrong about the input has been checked by `parameters.check()`; nothing is written before run(). Keeps `parameters` by reference, and
+     * `screen`, which the log goes to beside its file.
+     */
+    Simulation(const Parameters &parameters, MPI_Comm communicator, std::ostream &screen = std::cout);
 
     /**
      * Makes the output folder and runs to the end time or the steady state. Throws NumericalError, after writing the last good state, when a step cannot be

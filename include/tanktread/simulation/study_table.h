@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: error bars of the numbers of a run, split by cause.
+
+#ifndef tanktread_simulation_study_table_h
+#define tanktread_simulation_study_table_h
+
+#include <tanktread/simulation/error_estimate.h>
+#include <tanktread/simulation/study_plan.h>
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tanktread
+{
+  /** The finite numbers of a summary.csv by their names, nothing if the file is missing or its run has failed. Names of times, "from" and "end", are left out. */
+  std::optional<std::map<std::string, double>>
+  finished_summary(const std::string &folder);
+
+  /** A number of the run itself with what each series says; none where a run of the series lacks the number. */
+  struct StudyRow
+  {
+    std::string                               quantity;
+    double                                    value;
+    std::vector<std::optional<ErrorEstimate>> estimates;
+
+    /** Sum of the bars that there are. */
+    double
+    error() const;
+    bool
+    is_complete() const;
+  };
+
+  struct StudyTable
+  {
+    std::vector<std::string> causes; // of the series
+    std::vector<StudyRow>    rows;   // in alphabetical order of the quantities
+
+    /** Lines "quantity,cause,value,error,order,order is observed,extrapolated", the cause `all` with the sum first. */
+    std::string
+    as_csv() const;
+    /** For the eye. */
+    std::string
+    as_text() const;
+  };
+
+  /** @param summaries of each run of the plan, nothing where it has failed; the first one is there. */
+  StudyTable
+  study_table(const StudyPlan                                                 &plan,
+              const std::vector<std::optional<std::map<std::string, double>>> &summaries,
+              bool                                                             is_enriched,
+              bool                                                             is_second_order_in_time);
+} // namespace tanktread
+
+#endif

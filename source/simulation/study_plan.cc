@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: the runs of a study and what is learned from which of them.
+
+#include <tanktread/simulation/parameters.h>
+#include <tanktread/simulation/study_plan.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+namespace tanktread
+{
+  namespace
+  {
+    constexpr double stop_ratio = 4., tolerance_ratio = 10.;
+
+    std::string
+    number(const double value)
+    {
+      std::ostringstream text;
+      text << std::setprecision(15) << value;
+      return text.str();
+    }
+
+    double
+    power(const double base, const unsigned int n)
+    {
+      return std::pow(base, int(n));
+    }
+
+    /** The run's number, which is appended if it is new. */
+    std::size_t
+    find_or_add(std::vector<StudyRun> &runs, const std::map<Cause, unsigned int> &coarser)
+    {
+      const auto found = std::find_if(runs.begin(), runs.end(), [&](const StudyRun &run) { return run.coarser == coarser; });
+      if (found != runs.end())
+        return found - runs.begin();
+      runs.push_back({coarser});
+      return runs.size() - 1;
+    }
+
+    StudySeries
+    make_series(const std::vector<Cause> &causes, const unsigned int levels, const std::map<Cause, unsigned int> &finest, std::vector<StudyRun> &runs)
+    {
+      StudySeries result{causes, {find_or_add(runs, finest)}};
+      for (unsigned int k = 1; k < levels; ++k)
+        {
+          std::map<Cause, unsigned int> coarser = finest;
+          for (const Cause cause : causes)
+            coarser[cause] = k;
+          result.runs.push_back(find_or_add(runs, coarser));
+        }
+      return result;
+    }
+
+    std::string
+    box_sides(const std::vector<double> &sides, const double divisor)
+    {
+      std::string result;
+      for (const double side : sides)
+        result += (result.empty() ? "" : ", ") + number(side / divisor);
+      return result;
+    }
+  } // namespace
+
+
+  std::string
+  StudyRun::name() const
+  {
+    std::string result;
+    for (const auto &[cause, n] : coarser)
+      result += (result.empty() ? "" : "_") + word(cause) + "-" + std::to_string(n);
+    std::replace(result.begin(), result.end(), ' ', '-');
+    return result;
+  }
+
+
+  std::string
+  StudySeries::name() const
+  {
+    std::string result;
+    for (const Cause cause : causes)
+      result += (result.empty() ? "" : ", ") + word(cause);
+    return result;
+  }
+
+
+  double
+  StudySeries::ratio() const
+  {
+    if (causes.size() > 1)
+      return 2.;
+    return causes[0] == Cause::stop ? stop_ratio : causes[0] == Cause::tolerances ? tolerance_ratio : 2.;
+  }
+
+
+  double
+  StudySeries::expected_order(const bool is_enriched, const bool is_second_order_in_time) const
+  {
+    double lowest = 3.;
+    for (const Cause cause : causes)
+      switch (cause)
+        {
+          case Cause::mesh:
+          case Cause::cells:
+            lowest = std::min(lowest, is_enriched ? 2. : 1.);
+            break;
+          case Cause::control_mesh:
+            lowest = std::min(lowest, 2.);
+            break;
+          case Cause::step:
+            lowest = std::min(lowest, is_second_order_in_time ? 2. : 1.);
+            break;
+          case Cause::box: // (a/l)^3
+            break;
+          case Cause::stop: // a shape that relaxes has as far to go as it is slow
+          case Cause::tolerances:
+            lowest = std::min(lowest, 1.);
+            break;
+        }
+    return lowest;
+  }
+
+
+  StudyPlan
+  study_plan(const StudyParameters &study)
+  {
+    const std::vector<Cause> causes = study.causes();
+    StudyPlan                plan;
+    plan.runs.push_back({});
+    if (study.together)
+      plan.series.push_back(make_series(causes, study.levels, {}, plan.runs));
+    else
+      for (const Cause cause : causes)
+        {
+          const bool has_mesh = std::find(causes.begin(), causes.end(), Cause::mesh) != causes.end();
+          const bool on_mesh  = study.frugal && has_mesh && cause != Cause::mesh;
+          plan.series.push_back(
+            make_series({cause}, study.levels, on_mesh ? std::map<Cause, unsigned int>{{Cause::mesh, 1}} : std::map<Cause, unsigned int>{}, plan.runs));
+        }
+    return plan;
+  }
+
+
+  std::vector<std::string>
+  changes(const Parameters &parameters, const StudyRun &run)
+  {
+    std::vector<std::string> result = {"Study/Vary="};
+    if (!run.coarser.empty())
+      {
+        result.push_back("Output/Directory=" + parameters.output.directory + "/study/" + run.name());
+        result.push_back("Output/Field interval=0");
+      }
+    for (const auto &[cause, n] : run.coarser)
+      {
+        if (cause == Cause::mesh || cause == Cause::cells)
+          result.push_back("Fluid mesh/Finest cell=" + number(parameters.fluid_mesh.finest_cell * power(2., n)));
+        if (cause == Cause::mesh || cause == Cause::control_mesh)
+          result.push_back("Shell mesh/Level=" + std::to_string(parameters.shell_mesh.level - n));
+        if (cause == Cause::step)
+          result.push_back(parameters.time.tolerance > 0. ? "Time/Tolerance=" + number(parameters.time.tolerance * power(8., n))
+                                                          : "Time/Step=" + number(parameters.time.step * power(2., n)));
+        if (cause == Cause::box)
+          result.push_back("Scene/Box side=" + box_sides(parameters.scene.box_side, power(2., n)));
+        if (cause == Cause::stop)
+          result.push_back("Time/Steady tolerance=" + number(parameters.time.steady_tolerance * power(stop_ratio, n)));
+        if (cause == Cause::tolerances)
+          result.push_back("Solver/Newton tolerance=" + number(parameters.solver.newton_tolerance * power(tolerance_ratio, n)));
+      }
+    return result;
+  }
+} // namespace tanktread

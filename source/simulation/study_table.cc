@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: error bars of the numbers of a run, split by cause.
+
+#include <tanktread/simulation/study_table.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <iomanip>
+#include <sstream>
+
+namespace tanktread
+{
+  namespace
+  {
+    std::string
+    formatted(const char *const format, const double value)
+    {
+      char text[40];
+      std::snprintf(text, sizeof(text), format, value);
+      return text;
+    }
+
+    std::optional<ErrorEstimate>
+    estimate(const StudySeries                                               &series,
+             const std::string                                               &quantity,
+             const std::vector<std::optional<std::map<std::string, double>>> &summaries,
+             const double                                                     order)
+    {
+      std::vector<double> values;
+      for (const std::size_t run : series.runs)
+        {
+          if (!summaries[run] || summaries[run]->count(quantity) == 0)
+            return std::nullopt;
+          values.push_back(summaries[run]->at(quantity));
+        }
+      return error_estimate(values, series.ratio(), order);
+    }
+  } // namespace
+
+
+  std::optional<std::map<std::string, double>>
+  finished_summary(const std::string &folder)
+  {
+    std::ifstream file(folder + "/summary.csv");
+    std::string   line, outcome;
+    if (!file)
+      return std::nullopt;
+    std::map<std::string, double> result;
+    while (std::getline(file, line))
+      {
+        const std::size_t comma = line.find(',');
+        if (comma == std::string::npos)
+          continue;
+        const std::string name = line.substr(0, comma), text = line.substr(comma + 1);
+        char             *end   = nullptr;
+        const double      value = std::strtod(text.c_str(), &end);
+        if (name == "outcome")
+          outcome = text;
+        else if (name.compare(0, 4, "from") != 0 && name.compare(0, 3, "end") != 0 && end != text.c_str() && *end == '\0' && std::isfinite(value))
+          result[name] = value;
+      }
+    if (outcome != "done" && outcome != "steady")
+      return std::nullopt;
+    return result;
+  }
+
+
+  double
+  StudyRow::error() const
+  {
+    double result = 0.;
+    for (const auto &estimate : estimates)
+      result += estimate ? estimate->error : 0.;
+    return result;
+  }
+
+
+  bool
+  StudyRow::is_complete() const
+  {
+    return std::all_of(estimates.begin(), estimates.end(), [](const auto &estimate) { return estimate.has_value(); });
+  }
+
+
+  std::string
+  StudyTable::as_csv() const
+  {
+    std::ostringstream text;
+    text << "quantity,cause,value,error,order,order is observed,extrapolated\n" << std::setprecision(10);
+    for (const StudyRow &row : rows)
+      {
+        text << row.quantity << ",all," << row.value << ',' << (row.is_complete() ? row.error() : std::nan("")) << ",nan,0,nan\n";
+        for (std::size_t s = 0; s < causes.size(); ++s)
+          {
+            const auto       &estimate = row.estimates[s];
+            const std::string cause    = causes[s].find(',') == std::string::npos ? causes[s] : '"' + causes[s] + '"';
+            text << row.quantity << ',' << cause << ',' << row.value << ',';
+            if (estimate)
+              text << estimate->error << ',' << estimate->order << ',' << estimate->is_observed << ',' << estimate->extrapolated << '\n';
+            else
+              text << "nan,nan,0,nan\n";
+          }
+      }
+    return text.str();
+  }
+
+
+  std::string
+  StudyTable::as_text() const
+  {
+    std::ostringstream text;
+    text << std::left << std::setw(26) << "quantity" << std::right << std::setw(13) << "value" << std::setw(12) << "error bar";
+    for (const std::string &cause : causes)
+      text << std::setw(std::max<int>(14, cause.size() + 2)) << cause;
+    text << '\n';
+    for (const StudyRow &row : rows)
+      {
+        text << std::left << std::setw(26) << row.quantity << std::right << std::setw(13) << formatted("%.7g", row.value) << std::setw(12)
+             << (row.is_complete() ? formatted("%.1e", row.error()) : "-");
+        for (std::size_t s = 0; s < causes.size(); ++s)
+          {
+            const auto &estimate = row.estimates[s];
+            std::string entry    = "-";
+            if (estimate)
+              entry = formatted("%.1e", estimate->error) + (estimate->is_observed ? formatted(" (%.1f)", estimate->order) : "");
+            text << std::setw(std::max<int>(14, causes[s].size() + 2)) << entry;
+          }
+        text << '\n';
+      }
+    return text.str();
+  }
+
+
+  StudyTable
+  study_table(const StudyPlan                                                 &plan,
+              const std::vector<std::optional<std::map<std::string, double>>> &summaries,
+              const bool                                                       is_enriched,
+              const bool                                                       is_second_order_in_time)
+  {
+    StudyTable table;
+    for (const StudySeries &series : plan.series)
+      table.causes.push_back(series.name());
+    for (const auto &[quantity, value] : *summaries[0])
+      {
+        StudyRow row{quantity, value, {}};
+        for (const StudySeries &series : plan.series)
+          row.estimates.push_back(estimate(series, quantity, summaries, series.expected_order(is_enriched, is_second_order_in_time)));
+        table.rows.push_back(std::move(row));
+      }
+    return table;
+  }
+} // namespace tanktread
