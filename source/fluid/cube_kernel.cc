@@ -13,30 +13,6 @@ namespace tanktread
   {
     // ---- Laplace ----
 
-    /** To the eigenvectors of M^{-1} K, up to a scaling: (1, 4, 1), (1, 0, -1), (1, -2, 1). */
-    template <typename V>
-    TANKTREAD_INLINE void
-    to_modes(V &a, V &b, V &c)
-    {
-      const V even = a + c, odd = a - c;
-      a = even + 4 * b;
-      c = even - 2 * b;
-      b = odd;
-    }
-
-
-    /** The transpose. */
-    template <typename V>
-    TANKTREAD_INLINE void
-    from_modes(V &a, V &b, V &c)
-    {
-      const V even = a + c, middle = 4 * a - 2 * c;
-      a = even + b;
-      c = even - b;
-      b = middle;
-    }
-
-
     /** By the Laplace matrix of a cube and, if `with_mass`, `mass_factor` / size^3 times its mass matrix. */
     template <typename Number, bool with_mass = false, typename V>
     TANKTREAD_INLINE void

@@ -64,9 +64,59 @@ namespace tanktread
   void
   LaplaceOperator<Number>::set_viscosity(const std::vector<double> &viscosities)
   {
+    strain_viscosities_.clear();
     own_factors_ = viscosities;
     for (std::size_t i = 0; i < own_factors_.size(); ++i)
       own_factors_[i] *= space_.cell_sizes()[i];
+  }
+
+
+  template <typename Number>
+  void
+  LaplaceOperator<Number>::set_strain_form(const Viscosity &viscosity)
+  {
+    // (grad u^T, grad v) has on average over the directions a third of the Laplace matrix's diagonal.
+    std::vector<double> of_diagonal = viscosity.means();
+    for (double &mu : of_diagonal)
+      mu += (mu - viscosity.least()) / 3.;
+    set_viscosity(of_diagonal);
+    least_ = viscosity.least();
+    cut_sizes_.clear();
+    cut_nodes_.clear();
+    cut_viscosities_.clear();
+    const auto add_cut = [&](const unsigned int cell, const double *const more, const double less) {
+      const unsigned int *const nodes = space_.cell_nodes(cell);
+      cut_sizes_.push_back(space_.cell_sizes()[cell]);
+      cut_nodes_.insert(cut_nodes_.end(), nodes, nodes + 27);
+      for (unsigned int q = 0; q < 27; ++q)
+        cut_viscosities_.push_back(more[q] - less);
+    };
+    for (unsigned int cell = 0; cell < space_.n_cells(); ++cell)
+      {
+        const double *const mu         = &viscosity.at_points()[27 * std::size_t(cell)];
+        const auto [smallest, largest] = std::minmax_element(mu, mu + 27);
+        strain_viscosities_.push_back(*smallest);
+        if (*smallest < *largest)
+          add_cut(cell, mu, *smallest);
+      }
+    const std::vector<double> cut = viscosity.cut_at_points();
+    for (std::size_t i = 0; i < viscosity.cut().cells.size(); ++i)
+      add_cut(viscosity.cut().cells[i], &cut[27 * i], 0.);
+  }
+
+
+  template <typename Number>
+  void
+  LaplaceOperator<Number>::add_strain_form(const Number *const u, Number *const y) const
+  {
+    const Cubes all{space_.n_cells(), space_.cell_sizes().data(), space_.cell_nodes(0), nullptr};
+    add_uniform_viscous(instructions_, all, strain_viscosities_.data(), least_, u, y);
+    const unsigned int n_cut = cut_sizes_.size();
+    add_viscous(instructions_, {n_cut, cut_sizes_.data(), cut_nodes_.data(), nullptr}, cut_viscosities_.data(), u, y);
+    if (masses_.empty())
+      return;
+    const std::vector<double> none(all.n, 0.);
+    add_helmholtz(instructions_, {all.n, none.data(), all.velocity_nodes, nullptr}, masses_.data(), u, y);
   }
 
 
@@ -91,6 +141,8 @@ namespace tanktread
     const Cubes cells{space_.n_cells(), factors().data(), space_.cell_nodes(0), linear ? space_.cell_nodes(0) : nullptr};
     if (linear)
       add_linear_laplace(cells, u, y);
+    else if (!strain_viscosities_.empty())
+      add_strain_form(u, y);
     else if (masses_.empty())
       add_laplace(instructions_, cells, u, y);
     else

@@ -99,8 +99,15 @@ namespace tanktread
   void
   Multigrid<Number>::set_viscosity(const std::vector<double> &viscosities)
   {
-    std::vector<double> values = viscosities;
-    for (unsigned int l = levels_.size() - 1; l > 0; --l)
+    set_viscosity(viscosities, levels_.size());
+  }
+
+
+  template <typename Number>
+  void
+  Multigrid<Number>::set_viscosity(std::vector<double> values, const unsigned int end)
+  {
+    for (unsigned int l = end - 1; l > 0; --l)
       {
         Level &level = levels_[l];
         level.laplace->set_viscosity(values);
@@ -109,6 +116,19 @@ namespace tanktread
       }
     levels_.front().laplace->set_viscosity(values);
     first_rung_solver_->set_viscosity(values);
+  }
+
+
+  template <typename Number>
+  void
+  Multigrid<Number>::set_viscosity(const Viscosity &viscosity)
+  {
+    if (levels_.size() == 1)
+      return set_viscosity(viscosity.means());
+    Level &last = levels_.back();
+    last.laplace->set_strain_form(viscosity);
+    prepare_smoother(last);
+    set_viscosity((*last.averages)(viscosity.means()), levels_.size() - 1);
   }
 
 

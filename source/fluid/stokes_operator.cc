@@ -67,9 +67,13 @@ namespace tanktread
       add_stokes(instructions_, cubes(space_), u_.data(), p_.data(), y_u_.data(), y_p_.data());
     else
       {
-        add_viscous_stokes(instructions_, cubes(space_), viscosity_->at_points().data(), viscosity_->least(), u_.data(), p_.data(), y_u_.data(), y_p_.data());
+        const double *const x_u = u_.data(), *const x_p = p_.data();
+        if (viscosity_->in_cells().empty())
+          add_viscous_stokes(instructions_, cubes(space_), viscosity_->at_points().data(), viscosity_->least(), x_u, x_p, y_u_.data(), y_p_.data());
+        else
+          add_uniform_viscous_stokes(instructions_, cubes(space_), viscosity_->in_cells().data(), viscosity_->least(), x_u, x_p, y_u_.data(), y_p_.data());
         const unsigned int n_cut = cut_sizes_.size();
-        add_weighted_viscous(instructions_, {n_cut, cut_sizes_.data(), cut_nodes_.data(), nullptr}, viscosity_->cut().weights.data(), u_.data(), y_u_.data());
+        add_weighted_viscous(instructions_, {n_cut, cut_sizes_.data(), cut_nodes_.data(), nullptr}, viscosity_->cut().weights.data(), x_u, y_u_.data());
       }
     u.collect(y_u_.data());
     p.collect(y_p_.data());

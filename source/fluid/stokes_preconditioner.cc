@@ -33,7 +33,7 @@ namespace tanktread
   void
   StokesPreconditioner::set_viscosity(const Viscosity &viscosity)
   {
-    multigrid_.set_viscosity(viscosity.means());
+    multigrid_.set_viscosity(viscosity);
     pressure_mass_.set_viscosity(viscosity.means());
     prepare_pressure_mass();
   }

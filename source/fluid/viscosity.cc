@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: a viscosity that differs from place to place.
 
+#include <tanktread/fluid/cell_weights.h>
 #include <tanktread/fluid/stokes_operator.h>
 #include <tanktread/fluid/viscosity.h>
 
@@ -30,6 +31,25 @@ namespace tanktread
         }
       return result;
     }
+
+
+    constexpr std::array<double, 3> gauss_weights = {{5. / 18, 8. / 18, 5. / 18}};
+
+
+    /** Values at the five fine Gauss points of the quadratic functions that are one at one of the three and zero at the others: [fine][coarse]. */
+    std::array<std::array<double, 3>, 5>
+    coarse_lagrange()
+    {
+      std::array<std::array<double, 3>, 5> result;
+      const std::array<double, 3>         &x = gauss_abscissae();
+      for (unsigned int p = 0; p < 5; ++p)
+        for (unsigned int q = 0; q < 3; ++q)
+          {
+            const double a = x[(q + 1) % 3], b = x[(q + 2) % 3];
+            result[p][q] = (fine_gauss_abscissae()[p] - a) * (fine_gauss_abscissae()[p] - b) / ((x[q] - a) * (x[q] - b));
+          }
+      return result;
+    }
   } // namespace
 
 
@@ -49,11 +69,43 @@ namespace tanktread
   {
     if (at_points_.size() % 27 != 0)
       throw std::invalid_argument("A viscosity needs 27 numbers a cell.");
-    constexpr double weight[3] = {5. / 18, 8. / 18, 5. / 18};
     for (std::size_t i = 0; i < at_points_.size(); ++i)
-      means_[i / 27] += weight[i % 3] * weight[i / 3 % 3] * weight[i % 27 / 9] * at_points_[i];
+      means_[i / 27] += gauss_weights[i % 3] * gauss_weights[i / 3 % 3] * gauss_weights[i % 27 / 9] * at_points_[i];
+    for (std::size_t i = 0; i < at_points_.size(); i += 27)
+      {
+        if (std::any_of(&at_points_[i], &at_points_[i] + 27, [&](const double mu) { return mu != at_points_[i]; }))
+          {
+            in_cells_.clear();
+            break;
+          }
+        in_cells_.push_back(at_points_[i]);
+      }
     for (std::size_t i = 0; i < cut_.cells.size(); ++i)
       means_[cut_.cells[i]] += std::accumulate(&cut_.weights[125 * i], &cut_.weights[125 * i] + 125, 0.);
+  }
+
+
+  std::vector<double>
+  Viscosity::cut_at_points() const
+  {
+    static const auto   lagrange = coarse_lagrange();
+    std::vector<double> result(27 * cut_.cells.size(), 0.);
+    for (std::size_t i = 0; i < cut_.cells.size(); ++i)
+      {
+        double *const sums = &result[27 * i];
+        for (unsigned int p = 0; p < 125; ++p)
+          for (unsigned int q = 0; q < 27; ++q)
+            sums[q] += cut_.weights[125 * i + p] * lagrange[p % 5][q % 3] * lagrange[p / 5 % 5][q / 3 % 3] * lagrange[p / 25][q / 9];
+        double whole = 0., positive = 0.;
+        for (unsigned int q = 0; q < 27; ++q)
+          {
+            whole += sums[q];
+            positive += sums[q] = std::max(sums[q], 0.);
+          }
+        for (unsigned int q = 0; q < 27; ++q)
+          sums[q] *= positive > 0. ? std::max(whole, 0.) / (positive * gauss_weights[q % 3] * gauss_weights[q / 3 % 3] * gauss_weights[q / 9]) : 0.;
+      }
+    return result;
   }
 
 

@@ -9,24 +9,6 @@ namespace tanktread
 
   namespace
   {
-    /** Component d of g0, g1, g2 as the three components of the result. */
-    template <typename Number, int n_cubes, int d>
-    TANKTREAD_INLINE Lanes<Number, n_cubes>
-                     transposed(const Lanes<Number, n_cubes> g0, const Lanes<Number, n_cubes> g1, const Lanes<Number, n_cubes> g2)
-    {
-      using Index         = typename Register<Number, 4 * n_cubes>::index;
-      constexpr int width = 4 * n_cubes;
-      Index         first{}, second{};
-      for (int cube = 0; cube < n_cubes; ++cube)
-        for (int c = 0; c < 4; ++c)
-          {
-            first[4 * cube + c]  = c == 1 ? width + 4 * cube + d : 4 * cube + d;
-            second[4 * cube + c] = c == 2 ? width + 4 * cube + d : 4 * cube + c;
-          }
-      return __builtin_shuffle(__builtin_shuffle(g0, g1, first), g2, second);
-    }
-
-
     /**
      * v = matrix of the strain form without `least` (grad u^T, grad v), times v. @param viscosity 27 numbers for the first of the cubes, those of the others
      * follow.

@@ -109,11 +109,13 @@ namespace tanktread
     if (!pressure_jumps_)
       {
         const Timings::Scope jump_scope(timings_, "- pressure jumps");
+        const double         tolerance = level_.has_viscosities() ? 0.03 : 0.1; // more accurate ones save no iterations
         pressure_jumps_.emplace(FluidOperator{fluid.stokes(), inertia},
                                 fluid.preconditioner(),
                                 level_.coupling(),
                                 volume_ / level_.liquids().mean_viscosity(),
-                                krylov_basis_);
+                                krylov_basis_,
+                                tolerance);
       }
     const MonolithicPreconditioner preconditioner(fluid.preconditioner(), shells, layout_, *pressure_jumps_, &timings_);
 

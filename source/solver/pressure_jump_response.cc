@@ -11,9 +11,7 @@ namespace tanktread
 {
   namespace
   {
-    /** More accurate ones save no iterations of the solver. */
-    constexpr double       tolerance      = 0.1;
-    constexpr unsigned int max_iterations = 10;
+    constexpr unsigned int max_iterations = 20;
   } // namespace
 
 
@@ -21,7 +19,8 @@ namespace tanktread
                                              const StokesInverse &preconditioner,
                                              const Coupling      &coupling,
                                              const double         volume,
-                                             KrylovBasis         &basis)
+                                             KrylovBasis         &basis,
+                                             const double         tolerance)
     : communicator_(preconditioner.space().mesh.communicator())
     , s_(coupling.n_capsules(), 0.)
   {

@@ -189,6 +189,51 @@ TEST(CubeKernel, EqualsElementMatricesInFloat)
 }
 
 
+namespace
+{
+  /** Of the kernels for cubes of one viscosity each from those with 27 numbers a cube. */
+  template <typename Number>
+  double
+  largest_uniform_difference()
+  {
+    RandomCubes         random;
+    const unsigned int  n_u = 4 * RandomCubes::n_velocity_nodes, n_p = RandomCubes::n_pressure_nodes;
+    std::vector<double> viscosity = random.random_numbers(RandomCubes::n), at_points, u = random.random_numbers(n_u);
+    for (double &mu : viscosity)
+      {
+        mu = 1.5 + mu;
+        at_points.insert(at_points.end(), 27, mu);
+      }
+    const double least = 0.4;
+    const auto   u_n = converted<Number>(u), p_n = converted<Number>(random.random_numbers(n_p)), none = converted<Number>(std::vector<double>(n_p, 0.));
+    const auto   at_points_n = converted<Number>(at_points);
+    double       result      = 0.;
+    const auto   from_array  = [](const Array<Number> &x) { return std::vector<double>(x.begin(), x.end()); };
+    for (const InstructionSet set : instruction_sets())
+      {
+        Array<Number> expected(n_u), expected_p(n_p), found(n_u), found_p(n_p), alone(n_u);
+        add_viscous_stokes(set, random.view(), at_points_n.data(), Number(least), u_n.data(), p_n.data(), expected.data(), expected_p.data());
+        add_uniform_viscous_stokes(set, random.view(), viscosity.data(), least, u_n.data(), p_n.data(), found.data(), found_p.data());
+        result = std::max({result, difference(found, from_array(expected)), difference(found_p, from_array(expected_p))});
+        Array<Number> expected_alone(n_u), nothing(n_p);
+        add_viscous_stokes(set, random.view(), at_points_n.data(), Number(least), u_n.data(), none.data(), expected_alone.data(), nothing.data());
+        add_uniform_viscous(set, random.view(), viscosity.data(), least, u_n.data(), alone.data());
+        result = std::max(result, difference(alone, from_array(expected_alone)));
+      }
+    return result;
+  }
+} // namespace
+
+
+TEST(CubeKernel, UniformViscousFormIsTheViscousOne)
+{
+  const double in_double = largest_uniform_difference<double>(), in_float = largest_uniform_difference<float>();
+  std::cout << "largest relative difference " << in_double << " in double, " << in_float << " in float" << std::endl;
+  EXPECT_LT(in_double, 4e-15);
+  EXPECT_LT(in_float, 2e-6);
+}
+
+
 TEST(CubeKernel, ViscousFormIsSymmetricAndBlindForRigidMotions)
 {
   RandomCubes         random;

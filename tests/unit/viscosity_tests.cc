@@ -300,7 +300,7 @@ TEST(Viscosity, IterationsOverTheRatio)
       const Point centre(0.1, 0., -0.2);
       fluid.adapt(oracle::sphere_points(centre, 1.));
       for (const auto &[ratio, allowed] :
-           std::vector<std::pair<double, unsigned int>>{{0.01, 160}, {0.1, 45}, {0.2, 35}, {1., 13}, {5., 28}, {20., 52}, {100., 125}})
+           std::vector<std::pair<double, unsigned int>>{{0.01, 48}, {0.1, 21}, {0.2, 17}, {1., 13}, {5., 16}, {20., 29}, {100., 70}})
         {
           fluid.set_viscosity(viscosity_from(fluid.mesh(), sphere(ratio, centre), std::min(1., ratio)));
           FluidBlockVector   x;

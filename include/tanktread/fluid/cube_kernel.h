@@ -99,6 +99,26 @@ namespace tanktread
   void
   add_viscous_stokes(InstructionSet set, const Cubes &cubes, const Number *viscosity, Number least, const Number *u, const Number *p, Number *y_u, Number *y_p);
 
+  /**
+   * The same with one viscosity a cube: y += (viscosity grad u, grad v) + ((viscosity - least) grad u^T, grad v). Both terms are sparse in the basis that
+   * diagonalises the Laplace matrix: it costs little more than add_laplace.
+   */
+  template <typename Number>
+  void
+  add_uniform_viscous(InstructionSet set, const Cubes &cubes, const double *viscosity, double least, const Number *u, Number *y);
+
+  /** As add_stokes with that in place of the Laplace matrix. */
+  template <typename Number>
+  void
+  add_uniform_viscous_stokes(InstructionSet set,
+                             const Cubes   &cubes,
+                             const double  *viscosity,
+                             double         least,
+                             const Number  *u,
+                             const Number  *p,
+                             Number        *y_u,
+                             Number        *y_p);
+
   /** Factors of the terms of inertia. */
   template <typename Number>
   struct InertiaCoefficients

@@ -107,6 +107,50 @@ namespace tanktread
     }
 
 
+    // ---- Gradients ----
+
+    /** Component d of g0, g1, g2 as the three components of the result. */
+    template <typename Number, int n_cubes, int d>
+    TANKTREAD_INLINE Lanes<Number, n_cubes>
+                     transposed(const Lanes<Number, n_cubes> g0, const Lanes<Number, n_cubes> g1, const Lanes<Number, n_cubes> g2)
+    {
+      using Index         = typename Register<Number, 4 * n_cubes>::index;
+      constexpr int width = 4 * n_cubes;
+      Index         first{}, second{};
+      for (int cube = 0; cube < n_cubes; ++cube)
+        for (int c = 0; c < 4; ++c)
+          {
+            first[4 * cube + c]  = c == 1 ? width + 4 * cube + d : 4 * cube + d;
+            second[4 * cube + c] = c == 2 ? width + 4 * cube + d : 4 * cube + c;
+          }
+      return __builtin_shuffle(__builtin_shuffle(g0, g1, first), g2, second);
+    }
+
+
+    /** To the eigenvectors of M^{-1} K, up to a scaling: (1, 4, 1), (1, 0, -1), (1, -2, 1). */
+    template <typename V>
+    TANKTREAD_INLINE void
+    to_modes(V &a, V &b, V &c)
+    {
+      const V even = a + c, odd = a - c;
+      a = even + 4 * b;
+      c = even - 2 * b;
+      b = odd;
+    }
+
+
+    /** The transpose. */
+    template <typename V>
+    TANKTREAD_INLINE void
+    from_modes(V &a, V &b, V &c)
+    {
+      const V even = a + c, middle = 4 * a - 2 * c;
+      a = even + b;
+      c = even - b;
+      b = middle;
+    }
+
+
     // ---- Divergence ----
 
     /**

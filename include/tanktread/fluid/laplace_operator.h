@@ -6,6 +6,7 @@
 
 #include <tanktread/fluid/cube_kernel.h>
 #include <tanktread/fluid/node_space.h>
+#include <tanktread/fluid/viscosity.h>
 
 namespace tanktread
 {
@@ -28,6 +29,13 @@ namespace tanktread
     void
     set_viscosity(const std::vector<double> &viscosities);
 
+    /**
+     * The form is (mu grad u, grad v) + ((mu - least) grad u^T, grad v) from now on, that of the Stokes equations with two viscosities, with 27 points in
+     * cells where they meet.
+     */
+    void
+    set_strain_form(const Viscosity &viscosity);
+
     /** y = A u for owned nodes; updates the rest of u, and what y has beyond its owned nodes is void. Collective. */
     void
     apply(Number *u, Number *y) const;
@@ -47,6 +55,8 @@ namespace tanktread
     }
 
   private:
+    void
+    add_strain_form(const Number *u, Number *y) const;
     /** What the unit cube's matrix is multiplied by: mu h, one number a cell. */
     const std::vector<double> &
     factors() const
@@ -56,8 +66,14 @@ namespace tanktread
 
     const NodeSpace     &space_;
     const InstructionSet instructions_;
-    std::vector<double>  own_factors_; // empty with the viscosity 1
-    std::vector<double>  masses_;      // shift times the cells' volumes; empty without a shift
+    std::vector<double>  own_factors_; // empty with the viscosity 1; with the strain form those of the Laplace matrix with about its diagonal
+    // Of the strain form: what is uniform in cells, and what there is more at the points of some.
+    std::vector<double>       strain_viscosities_;
+    double                    least_ = 0.;
+    std::vector<double>       cut_sizes_;
+    std::vector<unsigned int> cut_nodes_;
+    std::vector<Number>       cut_viscosities_;
+    std::vector<double>       masses_; // shift times the cells' volumes; empty without a shift
   };
 } // namespace tanktread
 

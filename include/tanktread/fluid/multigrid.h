@@ -50,6 +50,13 @@ namespace tanktread
     set_viscosity(const std::vector<double> &viscosities);
 
     /**
+     * Makes it one for the form of the Stokes equations with that viscosity, LaplaceOperator::set_strain_form(): on the last rung it is smoothed with, on
+     * coarser ones (mu grad u, grad v) stands for it. Collective.
+     */
+    void
+    set_viscosity(const Viscosity &viscosity);
+
+    /**
      * From now on v_cycle() is for A + shift times the mass matrix, also after the next climb. Costs about as much as two cycles unless that is so already.
      * Collective.
      */
@@ -110,6 +117,9 @@ namespace tanktread
     /** Operator and arrays of the last level, whose space is known. */
     void
     make_operator();
+    /** Of rungs below number `end`, `values` being those of the cells of rung end - 1. */
+    void
+    set_viscosity(std::vector<double> values, unsigned int end);
     /** Diagonal and largest eigenvalue. */
     void
     prepare_smoother(Level &level);

@@ -59,6 +59,18 @@ namespace tanktread
     {
       return means_;
     }
+    /** The number at the points of each cell where all 27 of it are the same in all cells of this rank; empty otherwise. */
+    const std::vector<double> &
+    in_cells() const
+    {
+      return in_cells_;
+    }
+    /**
+     * What there is more in cut cells at the points of the 3 x 3 x 3 rule, 27 numbers for each: positive ones with the same integral that come near to the
+     * weights, for preconditioners.
+     */
+    std::vector<double>
+    cut_at_points() const;
 
     /**
      * y += 2 ((viscosity - 1) eps(u_inf), eps(v)): what the viscosity adds to the load of the flow that the velocities are disturbances of. Its strain rate is
@@ -68,7 +80,7 @@ namespace tanktread
     add_excess_stress(const TaylorHoodSpace &space, const UndisturbedFlow &flow, FluidVector &y) const;
 
   private:
-    std::vector<double> at_points_, means_;
+    std::vector<double> at_points_, means_, in_cells_;
     double              least_;
     CutCells            cut_;
   };

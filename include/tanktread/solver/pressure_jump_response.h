@@ -36,7 +36,7 @@ namespace tanktread
    *
    *     pi = -(r_pi - e . r_p)/s.
    *
-   * For e and s the Stokes equations are solved with the loads R v of all shells, to a tenth: -e is the pressure, s the flux through the shell and what is left of
+   * For e and s the Stokes equations are solved with the loads R v of all shells, roughly: -e is the pressure, s the flux through the shell and what is left of
    * the divergence. Loads of several shells are told apart by the nearest of their centres.
    */
   class PressureJumpResponse
@@ -44,9 +44,14 @@ namespace tanktread
   public:
     /**
      * @param coupling has its points where the shells are. @param volume of a capsule over the mean viscosity, in place of s where that is not found. @param
-     * basis memory that may be used. Collective.
+     * basis memory that may be used. @param tolerance of that solution. Collective.
      */
-    PressureJumpResponse(const FluidOperator &fluid, const StokesInverse &preconditioner, const Coupling &coupling, double volume, KrylovBasis &basis);
+    PressureJumpResponse(const FluidOperator &fluid,
+                         const StokesInverse &preconditioner,
+                         const Coupling      &coupling,
+                         double               volume,
+                         KrylovBasis         &basis,
+                         double               tolerance = 0.1);
 
     /** pi of all capsules for the rows r_p of the pressures and r_pi of the fluxes. Collective. */
     std::vector<double>
