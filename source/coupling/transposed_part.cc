@@ -10,21 +10,7 @@ namespace tanktread
 {
   namespace
   {
-    inline Vector4
-    vector(const std::array<float, 4> &v)
-    {
-      return {v[0], v[1], v[2]};
-    }
-
-
-    inline double
-    dot(const std::array<float, 4> &v, const Vector4 &u)
-    {
-      return v[0] * u[0] + v[1] * u[1] + v[2] * u[2];
-    }
-
-
-    using Rows = std::array<std::array<std::array<double, 9>, 8>, 27>;
+    using Sums = std::array<std::array<std::array<double, 9>, 8>, 27>;
 
     /** rows[b][v] = factor sum over the nodes a of one side of amplitudes[a][v] (products with b, or those of the whole cell minus them). */
     TANKTREAD_CLONES void
@@ -33,7 +19,7 @@ namespace tanktread
              const std::array<std::array<double, 8>, 27> &amplitudes,
              const bool                                   inner,
              const double                                 factor,
-             Rows                                        &rows)
+             Sums                                        &rows)
     {
       const GradientProducts &whole = whole_gradient_products();
       for (unsigned int b = 0; b < 27; ++b)
@@ -42,9 +28,59 @@ namespace tanktread
           for (unsigned int a = 0; a < 27; ++a)
             if (node_inside[a] != inner)
               for (unsigned int v = 0; v < 8; ++v)
-                for (unsigned int k = 0; k < 9; ++k)
-                  rows[b][v][k] += factor * amplitudes[a][v] * (inner ? inside[b][a][k] : whole[b][a][k] - inside[b][a][k]);
+                if (amplitudes[a][v] != 0.) // most are, the functions of a vertex vanish at two thirds of the nodes
+                  for (unsigned int k = 0; k < 9; ++k)
+                    rows[b][v][k] += factor * amplitudes[a][v] * (inner ? inside[b][a][k] : whole[b][a][k] - inside[b][a][k]);
         }
+    }
+
+
+    using Rows = TransposedPart::Rows;
+
+    /** y[c] += factor sum over vertices and d of rows[d][c][vertex] f[d][vertex]. */
+    [[gnu::always_inline]] inline void
+    add_product(const Rows &rows, const double factor, const double (&f)[3][8], Vector4 &y)
+    {
+      double sums[3][8] = {};
+      for (unsigned int d = 0; d < 3; ++d)
+        for (unsigned int c = 0; c < 3; ++c)
+          for (unsigned int v = 0; v < 8; ++v)
+            sums[c][v] += rows[d][c][v] * f[d][v];
+      double total[3] = {};
+      for (unsigned int c = 0; c < 3; ++c)
+        for (unsigned int v = 0; v < 8; ++v)
+          total[c] += sums[c][v];
+      y += factor * Vector4(total);
+    }
+
+
+    TANKTREAD_CLONES void
+    add_products(const Rows *const rows, const unsigned int n, const double factor, const std::array<Vector4, 8> &f, Vector4 *const y)
+    {
+      double by_direction[3][8];
+      for (unsigned int v = 0; v < 8; ++v)
+        for (unsigned int d = 0; d < 3; ++d)
+          by_direction[d][v] = f[v][d];
+      for (unsigned int b = 0; b < n; ++b)
+        add_product(rows[b], factor, by_direction, y[b]);
+    }
+
+
+    /** The transpose. */
+    TANKTREAD_CLONES void
+    add_transposed_products(const Rows *const rows, const unsigned int n, const double factor, const Vector4 *const u, std::array<Vector4, 8> &r)
+    {
+      double sums[3][8] = {};
+      for (unsigned int b = 0; b < n; ++b)
+        for (unsigned int d = 0; d < 3; ++d)
+          for (unsigned int c = 0; c < 3; ++c)
+            {
+              const double u_c = u[b][c];
+              for (unsigned int v = 0; v < 8; ++v)
+                sums[d][v] += rows[b][d][c][v] * u_c;
+            }
+      for (unsigned int v = 0; v < 8; ++v)
+        r[v] += factor * Vector4(sums[0][v], sums[1][v], sums[2][v]);
     }
   } // namespace
 
@@ -59,13 +95,13 @@ namespace tanktread
     // psi has the amplitudes of the nodes outside in its inner part, and minus those of the nodes inside in its outer part.
     const bool   inner  = ratio > 1.;
     const double factor = (inner ? 1. : -1.) * (std::max(ratio, 1.) - std::min(ratio, 1.));
-    Rows         rows;
+    Sums         rows;
     set_rows(inside, node_inside, amplitudes, inner, factor, rows);
     for (unsigned int b = 0; b < 27; ++b)
       for (unsigned int v = 0; v < 8; ++v)
         for (unsigned int d = 0; d < 3; ++d)
           for (unsigned int c = 0; c < 3; ++c)
-            nodes[b][v][d][c] = rows[b][v][3 * d + c];
+            nodes[b][d][c][v] = rows[b][v][3 * d + c];
     for (unsigned int v = 0; v < 8; ++v)
       for (unsigned int w = 0; w < 8; ++w)
         for (unsigned int d = 0; d < 3; ++d)
@@ -75,7 +111,7 @@ namespace tanktread
               for (unsigned int b = 0; b < 27; ++b)
                 if (node_inside[b] != inner)
                   sum += (inner ? 1. : -1.) * amplitudes[b][v] * rows[b][w][3 * d + c];
-              self[v][w][d][c] = sum;
+              self[v][d][c][w] = sum;
             }
   }
 
@@ -83,33 +119,20 @@ namespace tanktread
   void
   TransposedPart::add_loads(const double h, const std::array<Vector4, 8> &f, std::array<Vector4, 27> &loads) const
   {
-    for (unsigned int b = 0; b < 27; ++b)
-      for (unsigned int v = 0; v < 8; ++v)
-        for (unsigned int d = 0; d < 3; ++d)
-          loads[b] += (-h * f[v][d]) * vector(nodes[b][v][d]);
+    add_products(nodes.data(), 27, -h, f, loads.data());
   }
 
 
   void
   TransposedPart::add_response(const double h, const std::array<Vector4, 27> &u, std::array<Vector4, 8> &r) const
   {
-    for (unsigned int v = 0; v < 8; ++v)
-      {
-        double sum[3] = {};
-        for (unsigned int b = 0; b < 27; ++b)
-          for (unsigned int d = 0; d < 3; ++d)
-            sum[d] += dot(nodes[b][v][d], u[b]);
-        r[v] += -h * Vector4(sum);
-      }
+    add_transposed_products(nodes.data(), 27, -h, u.data(), r);
   }
 
 
   void
   TransposedPart::add_self_response(const double h, const std::array<Vector4, 8> &f, std::array<Vector4, 8> &r) const
   {
-    for (unsigned int v = 0; v < 8; ++v)
-      for (unsigned int w = 0; w < 8; ++w)
-        for (unsigned int d = 0; d < 3; ++d)
-          r[v] += (-h * f[w][d]) * vector(self[v][w][d]);
+    add_products(self.data(), 8, -h, f, r.data());
   }
 } // namespace tanktread

@@ -37,9 +37,10 @@ namespace tanktread
     void
     add_self_response(double h, const std::array<Vector4, 8> &f, std::array<Vector4, 8> &r) const;
 
-    // For unit values along d at a vertex the vector over c of the form with functions along c: [b or v][vertex][d].
-    std::array<std::array<std::array<std::array<float, 4>, 3>, 8>, 27> nodes;
-    std::array<std::array<std::array<std::array<float, 4>, 3>, 8>, 8>  self;
+    // For unit values along d at a vertex the form with functions along c: [b or v][d][c][vertex].
+    using Rows = std::array<std::array<std::array<float, 8>, 3>, 3>;
+    std::array<Rows, 27> nodes;
+    std::array<Rows, 8>  self;
   };
 } // namespace tanktread
 
