@@ -66,6 +66,13 @@ namespace tanktread
   {}
 
 
+  TaylorHoodSpace
+  TaylorHoodSpace::with_faces(const TaylorHoodSpace &other)
+  {
+    return {other.mesh, std::make_shared<const NodeSpace>(ScalarSpace(other.mesh, 2, false), 3), other.pressure};
+  }
+
+
   void
   TaylorHoodSpace::reinit(FluidBlockVector &vector, const unsigned int n_blocks) const
   {

@@ -61,10 +61,11 @@ namespace tanktread
   observe_suspension(Scene &scene, const State &state, const std::vector<CapsuleObservables> &capsules)
   {
     SuspensionObservables result;
+    const double          volume = scene.description().liquids.unbounded ? not_a_number : scene.description().box.volume(); // without a volume no mean
     for (const CapsuleObservables &capsule : capsules)
       {
-        result.stress += capsule.stress / scene.description().box.volume();
-        result.volume_fraction += capsule.volume / scene.description().box.volume();
+        result.stress += capsule.stress / volume;
+        result.volume_fraction += capsule.volume / volume;
       }
     const UndisturbedFlow     &flow     = scene.level().flow();
     const dealii::Tensor<2, 3> E        = 0.5 * (flow.linear + transpose(flow.linear));

@@ -203,7 +203,8 @@ namespace tanktread
         }
       return 0.;
     };
-    const std::string fluid_file = write_fluid_fields(folder_, "fluid", n_fields_, scene.fluid().space(), state.fluid, scene.level().flow(), interior_pressure);
+    const std::string fluid_file =
+      write_fluid_fields(folder_, "fluid", n_fields_, scene.level().whole_space(), scene.level().whole_fields(state), scene.level().flow(), interior_pressure);
     on_first_rank(communicator_, [&] {
       const std::string shell_file = "shell_" + number.str() + ".vtu";
       write_shells(folder_ + "/" + shell_file, capsule, state, velocities);

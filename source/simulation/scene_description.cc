@@ -24,6 +24,7 @@ namespace tanktread
       result.liquids.flow            = parameters.scene.undisturbed_flow();
       result.liquids.viscosity_ratio = parameters.scene.viscosity_ratio;
       result.liquids.reynolds_number = parameters.scene.reynolds_number;
+      result.liquids.unbounded       = parameters.scene.boundary == Boundary::unbounded;
       result.shape                   = make_capsule(parameters.capsule, std::min(parameters.shell_mesh.level, max_level));
       result.stress_free             = make_stress_free_shape(parameters.capsule, result.shape);
       result.centres                 = parameters.placement.positions();
@@ -74,6 +75,13 @@ namespace tanktread
       if (const double distance = smallest_distance_from_faces(shells, half_sides); distance <= 0.)
         {
           message << "Capsule/Centres: a capsule reaches " << -distance << " a beyond a face of the box with prescribed velocity; allowed: inside.";
+          throw InputError(message.str());
+        }
+      else if (scene.liquids.unbounded && distance < UnboundedLiquid::least_distance)
+        {
+          message << "Capsule/Centres: a capsule is " << distance
+                  << " a from a face of the box; allowed with Scene/Boundary = unbounded: " << UnboundedLiquid::least_distance
+                  << " a or more (Scene/Box side).";
           throw InputError(message.str());
         }
       if (const ShellGap smallest = smallest_gap(shells, periods, 4. * h); smallest.gap <= 0.)

@@ -70,6 +70,13 @@ namespace tanktread
                       "H of plane Poiseuille flow: its velocity is zero and its shear rate one at z = -H and H, in a. 0: at the faces of the box.",
                       Double(0.));
     add_numbers(prm);
+    add_enum_parameter(
+      prm,
+      "Boundary",
+      boundary,
+      {{"faces", Boundary::faces}, {"unbounded", Boundary::unbounded}},
+      "What the liquid meets at the faces of the box. faces: what 'Box faces' says. unbounded: more of the same liquid, without end; on all faces the "
+      "velocity is what the shells' forces make in unbounded liquid, and the undisturbed flow. A box of 8 a does for a capsule. Without inertia.");
     prm.add_parameter("Box side",
                       box_side,
                       "Side of the box, in a, whose middle is the origin: one number, or three along x, y and z.",
@@ -78,7 +85,7 @@ namespace tanktread
       "Box faces",
       box_faces,
       "What holds on the faces of the box across x, y and z. periodic: what leaves on one side comes in on the other; the flow must not change along that axis. "
-      "prescribed: the velocity is that of the undisturbed flow, a wall where that does not pass the face.",
+      "prescribed: the velocity is that of the undisturbed flow, a wall where that does not pass the face. Not read with 'Boundary = unbounded'.",
       List(Selection("periodic|prescribed"), 3, 3));
     prm.add_parameter("End time", end_time, "The run ends at this time.", Double(0.));
     prm.leave_subsection();
@@ -118,7 +125,7 @@ namespace tanktread
     for (unsigned int d = 0; d < 3; ++d)
       {
         result.side[d]  = box_side.size() == 1 ? box_side[0] : box_side[d];
-        result.faces[d] = box_faces[d] == "periodic" ? Faces::periodic : Faces::prescribed;
+        result.faces[d] = boundary == Boundary::faces && box_faces[d] == "periodic" ? Faces::periodic : Faces::prescribed;
       }
     return result;
   }
@@ -183,14 +190,22 @@ namespace tanktread
     std::ostringstream       message;
     if (box_side.size() == 2)
       throw InputError("Scene/Box side has 2 numbers; allowed: one, or three");
-    const Box             box  = this->box();
-    const UndisturbedFlow flow = undisturbed_flow().amplitude;
-    bool                  open = true;
+    if (boundary == Boundary::unbounded && reynolds_number > 0.)
+      {
+        message << "Scene/Boundary is unbounded; allowed with Scene/Reynolds number = " << reynolds_number
+                << ": faces (the flow far away is known without inertia only)";
+        throw InputError(message.str());
+      }
+    if (boundary == Boundary::unbounded && flow == Flow::plane_poiseuille && channel_half_width == 0.)
+      throw InputError("Scene/Channel half width is 0; allowed with Scene/Boundary = unbounded, where the faces of the box are no walls: a number > 0");
+    const Box             box   = this->box();
+    const UndisturbedFlow u_inf = undisturbed_flow().amplitude;
+    bool                  open  = true;
     for (unsigned int d = 0; d < 3; ++d)
       {
         open = open && box.is_periodic(d);
-        if (box.is_periodic(d) && flow.varies_along(d))
-          throw InputError("Scene/Box faces has 'periodic' across " + std::string(1, axes[d]) + ", but the flow (Scene/Flow = " + word(this->flow) +
+        if (box.is_periodic(d) && u_inf.varies_along(d))
+          throw InputError("Scene/Box faces has 'periodic' across " + std::string(1, axes[d]) + ", but the flow (Scene/Flow = " + word(flow) +
                            ") changes along " + axes[d] + "; allowed there: prescribed");
       }
     if (open)

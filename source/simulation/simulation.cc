@@ -42,6 +42,12 @@ namespace tanktread
       const Box box      = parameters.scene.box();
       for (unsigned int d = 0; d < 3; ++d)
         run.box += (d == 0 ? "" : " x ") + number(box.side[d]) + (box.is_periodic(d) ? " periodic" : "");
+      if (parameters.scene.boundary == Boundary::unbounded)
+        {
+          run.box += " in unbounded liquid";
+          run.included.push_back("the unbounded liquid beyond the box (Boundary unbounded: its flow of the shells' forces holds on all faces)");
+          run.left_out.push_back("means over a volume in suspension.csv (unbounded liquid: nan)");
+        }
       run.n_capsules = parameters.placement.centres.size();
       run.Re         = parameters.scene.reynolds_number;
       if (run.Re == 0.)

@@ -308,7 +308,24 @@ namespace tanktread
         level_.update_jumps(state);
         iterations += solve_with_fixed_jumps(state, Points::stay);
       }
-    return iterations;
+    return iterations + (level_.unbounded_liquid() == nullptr ? 0 : settle_faces(state));
+  }
+
+
+  unsigned int
+  NewtonSolver::settle_faces(State &state)
+  {
+    constexpr unsigned int max_solves = 20;
+    unsigned int           iterations = 0;
+    for (unsigned int i = 0; i < max_solves; ++i)
+      {
+        const unsigned int further = solve_with_fixed_jumps(state, Points::stay);
+        iterations += further;
+        if (further == 0)
+          return iterations;
+      }
+    throw NumericalError("The velocities on the faces of the box did not settle in " + std::to_string(max_solves) +
+                         " solutions of the Stokes equations: the box is too small for unbounded liquid around these shells.");
   }
 
 

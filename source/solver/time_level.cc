@@ -64,6 +64,8 @@ namespace tanktread
     coupling.set_viscosity_contrast({liquids.viscosity_ratio, flow_});
     if (has_viscosities() && (coupling.n_capsules() > 1 || liquids.flow.frequency != 0.))
       throw std::logic_error("TimeLevel: another viscosity inside is for one capsule in a steady flow.");
+    if (has_inertia() && liquids.unbounded)
+      throw std::logic_error("TimeLevel: inertia is not for unbounded liquid.");
   }
 
 
@@ -76,6 +78,8 @@ namespace tanktread
     preconditioner_x_.clear();
     if (has_inertia())
       inertia_ = std::make_unique<Inertia>(fluid.space(), liquids_.reynolds_number, flow_);
+    if (liquids_.unbounded)
+      unbounded_ = std::make_unique<UnboundedLiquid>(fluid.space(), liquids_.viscosity_ratio);
   }
 
 
@@ -123,6 +127,8 @@ namespace tanktread
     if (for_preconditioner)
       preconditioner_x_ = memory_.viscosity_x;
     fluid_->set_viscosity(coupling_.viscosity(*shells(state)[0]), for_preconditioner);
+    if (unbounded_)
+      unbounded_->faces().set_viscosity(*fluid_->viscosity());
     undisturbed_load_.reinit(fluid_->space().velocity->partitioner());
     fluid_->viscosity()->add_excess_stress(fluid_->space(), flow_, undisturbed_load_);
   }
@@ -155,15 +161,24 @@ namespace tanktread
     if (points == Points::follow)
       move_points(state);
 
+    ExtendedForces extended;
+    coupling_.extend_whole(coupling_.density(forces(state)), extended);
+    ShellFields       velocities  = coupling_.interpolate(state.fluid, extended);
+    const ShellFields undisturbed = coupling_.undisturbed_velocity(flow_, shells);
+    for (std::size_t c = 0; c < shells.size(); ++c)
+      velocities[c] += undisturbed[c];
     fluid_->space().reinit(r.fluid);
-    fluid_->stokes().vmult(r.fluid, state.fluid);
+    if (unbounded_)
+      {
+        unbounded_->set(state, shells, velocities);
+        unbounded_->faces().vmult(r.fluid, state.fluid);
+      }
+    else
+      fluid_->stokes().vmult(r.fluid, state.fluid);
     if (has_viscosities())
       r.fluid.block(velocity_block) += undisturbed_load_;
     if (inertia_ && tau > 0.)
       inertia_->add_residual(state.fluid, r.fluid);
-    ExtendedForces extended;
-    coupling_.extend_whole(coupling_.density(forces(state)), extended);
-    const ShellFields   disturbance = coupling_.interpolate(state.fluid, extended), undisturbed = coupling_.undisturbed_velocity(flow_, shells);
     std::vector<double> pressure_jumps;
     for (const CapsuleState &capsule : state.capsules)
       pressure_jumps.push_back(capsule.pressure_jump);
@@ -171,10 +186,9 @@ namespace tanktread
     r.shell_speed = shell_speed(r.fluid);
     for (std::size_t c = 0; c < shells.size(); ++c)
       {
-        const ControlPoints velocity = disturbance[c] + undisturbed[c];
-        r.capsules[c].volume         = shells[c]->volume() - shells[c]->capsule().volume();
-        r.capsules[c].flux           = shells[c]->volume_gradient().cwiseProduct(velocity).sum();
-        r.capsules[c].x              = state.capsules[c].x - step.xhat[c] - tau * velocity - state.capsules[c].volume_shift * shells[c]->normal_field();
+        r.capsules[c].volume = shells[c]->volume() - shells[c]->capsule().volume();
+        r.capsules[c].flux   = shells[c]->volume_gradient().cwiseProduct(velocities[c]).sum();
+        r.capsules[c].x      = state.capsules[c].x - step.xhat[c] - tau * velocities[c] - state.capsules[c].volume_shift * shells[c]->normal_field();
       }
     return r;
   }
@@ -207,6 +221,19 @@ namespace tanktread
     const ShellFields undisturbed = coupling_.undisturbed_velocity(flow_, shells(state));
     for (std::size_t c = 0; c < result.size(); ++c)
       result[c] += undisturbed[c];
+    return result;
+  }
+
+
+  FluidBlockVector
+  TimeLevel::whole_fields(const State &state)
+  {
+    if (!unbounded_)
+      return state.fluid;
+    FluidBlockVector result;
+    whole_space().reinit(result);
+    unbounded_->set(state, shells(state), shell_velocity(state));
+    unbounded_->faces().extend(state.fluid, result);
     return result;
   }
 

@@ -17,14 +17,15 @@ namespace tanktread::oracle
   /** Shells of one shape at rest in the fluid, without elasticity: forces are given. */
   struct GivenForces
   {
-    /** @param side of the box. @param centres added to the control points of each. @param contrast of the viscosities. */
+    /** @param side of the box. @param centres added to the control points of each. @param contrast of the viscosities. @param unbounded in place of the usual faces. */
     GivenForces(const FittedShape                     &shape,
                 const Interface                        interface,
                 const double                           side,
                 const FluidMeshParameters             &mesh,
                 const std::vector<Eigen::RowVector3d> &centres,
-                const ViscosityContrast               &contrast = {})
-      : scene(description(shape, interface, side, mesh, centres, contrast), MPI_COMM_WORLD)
+                const ViscosityContrast               &contrast  = {},
+                const bool                             unbounded = false)
+      : scene(description(shape, interface, side, mesh, centres, contrast, unbounded), MPI_COMM_WORLD)
       , fluid(scene.fluid())
       , coupling(scene.coupling())
       , coupling_surface(scene.capsule().coupling_surface())
@@ -83,7 +84,8 @@ namespace tanktread::oracle
     };
 
     /**
-     * Collective. @param F nodal forces of each shell. @param tolerance relative residual. @param n_sweeps of the viscous part of the jumps, after a first
+     * Collective. @param F nodal forces of each shell. @param tolerance relative residual. @param n_sweeps of the viscous part of the jumps, and of what velocities
+     * of the shells do to those on the faces, after a first
      * solve without. Throws NumericalError if the linear
      * solver does not get there in 300 iterations.
      */
@@ -111,6 +113,8 @@ namespace tanktread::oracle
           rhs = 0.;
           if (scene.level().has_viscosities())
             rhs.block(velocity_block) -= scene.level().undisturbed_load();
+          if (scene.level().unbounded_liquid() != nullptr)
+            subtract_faces(F, result, rhs);
           coupling.extend_whole(coupling.density(F), forces);
           coupling.spread(1., forces, std::vector<double>(F.size(), 0.), rhs);
           const LinearReport report = solve_fgmres(matrix, preconditioner, result.fields, rhs, tolerance, 300);
@@ -161,10 +165,14 @@ namespace tanktread::oracle
                 const double                           side,
                 const FluidMeshParameters             &mesh,
                 const std::vector<Eigen::RowVector3d> &centres,
-                const ViscosityContrast               &contrast)
+                const ViscosityContrast               &contrast,
+                const bool                             unbounded)
     {
       SceneDescription result;
-      result.box                     = side;
+      result.box               = side;
+      result.liquids.unbounded = unbounded;
+      if (unbounded)
+        result.box.faces.fill(Faces::prescribed);
       result.liquids.flow.amplitude  = contrast.flow;
       result.liquids.viscosity_ratio = contrast.ratio;
       result.shape                   = shape;
@@ -174,6 +182,28 @@ namespace tanktread::oracle
       result.fluid_mesh              = mesh;
       result.solver.interface        = interface;
       return result;
+    }
+
+    /** What the velocities on the faces of unbounded liquid load, with what is known of the flow. */
+    void
+    subtract_faces(const ShellFields &F, const Flow &flow, FluidBlockVector &rhs)
+    {
+      State       known      = state;
+      ShellFields velocities = coupling.undisturbed_velocity(scene.level().flow(), shells);
+      for (std::size_t c = 0; c < F.size(); ++c)
+        {
+          known.capsules[c].force = F[c];
+          if (!flow.velocity.empty())
+            velocities[c] += flow.velocity[c];
+        }
+      UnboundedLiquid &liquid = *scene.level().unbounded_liquid();
+      FluidBlockVector zero, load;
+      fluid.space().reinit(zero);
+      fluid.space().reinit(load);
+      liquid.set(known, shells, velocities);
+      liquid.faces().vmult(load, zero);
+      for (unsigned int b = 0; b <= pressure_block; ++b)
+        rhs.block(b) -= load.block(b);
     }
 
     LinearisedShells

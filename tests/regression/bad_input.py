@@ -59,6 +59,24 @@ CASES = {
         1,
         ["case.prm:4: Capsule/Stress-free shape: ", "allowed with the shape 'file': initial"],
     ),
+    "unbounded_with_inertia": (
+        section("Scene", "set Boundary = unbounded", "set Reynolds number = 0.5"),
+        ["case.prm"],
+        1,
+        ["Scene/Boundary is unbounded; allowed with Scene/Reynolds number = 0.5: faces"],
+    ),
+    "unbounded_without_walls": (
+        section("Scene", "set Boundary = unbounded", "set Flow = plane Poiseuille"),
+        ["case.prm"],
+        1,
+        ["Scene/Channel half width is 0; allowed with Scene/Boundary = unbounded, where the faces of the box are no walls: a number > 0"],
+    ),
+    "unbounded_in_too_small_a_box": (
+        section("Scene", "set Boundary = unbounded", "set Box side = 5") + section("Capsule", "set Centres = 0, 0, 1.1"),
+        ["case.prm"],
+        1,
+        ["Capsule/Centres: a capsule is 0.4", "a from a face of the box; allowed with Scene/Boundary = unbounded: 0.5 a or more (Scene/Box side)."],
+    ),
     "two_errors": (
         section("Scene", "set Shear number G = -1", "set End tim = 1"),
         ["case.prm"],

@@ -14,6 +14,7 @@
 #include <tanktread/fluid/types.h>
 
 #include <memory>
+#include <utility>
 
 namespace tanktread
 {
@@ -62,12 +63,23 @@ namespace tanktread
     /** Collective. @param velocity_nodes those of this mesh, if known already. */
     explicit TaylorHoodSpace(const FluidMesh &mesh, std::shared_ptr<const NodeSpace> velocity_nodes = nullptr);
 
+    /** The pressures of `other` with velocities at all nodes of the mesh, those on the faces with prescribed velocity included. Collective. */
+    static TaylorHoodSpace
+    with_faces(const TaylorHoodSpace &other);
+
     /** Makes `vector` a zero vector of `n_blocks` blocks, velocity and (if there are more than one) the pressure; blocks from 2 on stay empty. */
     void
     reinit(FluidBlockVector &vector, unsigned int n_blocks = 2) const;
 
     const FluidMesh                       &mesh;
     const std::shared_ptr<const NodeSpace> velocity, pressure;
+
+  private:
+    TaylorHoodSpace(const FluidMesh &mesh, std::shared_ptr<const NodeSpace> velocity, std::shared_ptr<const NodeSpace> pressure)
+      : mesh(mesh)
+      , velocity(std::move(velocity))
+      , pressure(std::move(pressure))
+    {}
   };
 } // namespace tanktread
 

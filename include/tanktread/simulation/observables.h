@@ -44,13 +44,13 @@ namespace tanktread
     Rheology         rheology{};
   };
 
-  /** All capsules together: a row of suspension.csv. */
+  /** All capsules together: a row of suspension.csv. In unbounded liquid there are no means over its volume: they are not numbers. */
   struct SuspensionObservables
   {
     Eigen::Matrix3d stress              = Eigen::Matrix3d::Zero(); // sum of the particle stresses over the volume of the box
     double          relative_viscosity  = 0.;                      // 1 + stress : E / (2 E : E), E the strain rate of a linear flow; not a number otherwise
     double          smallest_gap        = 0.;                      // see ShellGap; infinite for one capsule far from its images
-    double          distance_from_faces = 0.;                      // with prescribed velocity; infinite without
+    double          distance_from_faces = 0.;                      // that are not periodic; infinite without
     double          volume_fraction     = 0.;
   };
 

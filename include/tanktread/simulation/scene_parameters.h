@@ -35,6 +35,13 @@ namespace tanktread
     shear  // G_s = E h/3
   };
 
+  /** What is beyond the faces of the box. */
+  enum class Boundary
+  {
+    faces,    // nothing: on each pair of faces holds what Box faces says
+    unbounded // more of the same liquid, without end
+  };
+
   /**
    * Section "Scene". Lengths in a, the radius of the sphere with the capsule's volume; viscosity in mu of the outer fluid. A scene with flow measures time in
    * 1/gamma (rate of the flow), a quiescent one in mu a^3 / kappa_B.
@@ -52,7 +59,8 @@ namespace tanktread
     double                   oscillation_frequency = 0.;                                   // radians per unit of time
     std::vector<double>      frame_velocity        = {0., 0., 0.};                         // of the frame in which positions are
     double                   channel_half_width    = 0.;                                   // H; 0: half the side of the box along z
-    std::vector<double>      box_side              = {10.};                                // one number, or three
+    Boundary                 boundary              = Boundary::faces;
+    std::vector<double>      box_side              = {10.}; // one number, or three
     std::vector<std::string> box_faces             = {"periodic", "periodic", "prescribed"};
 
     ScaleModulus scale_modulus = ScaleModulus::young;

@@ -177,6 +177,9 @@ namespace tanktread
     /** solve_flow() with the viscous part of the jumps as it is. Returns the linear iterations. */
     unsigned int
     solve_with_fixed_jumps(State &state, Points points);
+    /** Solves again until the velocities on the faces are those of the flow, in unbounded liquid. Returns the linear iterations. Throws NumericalError if they do not settle. */
+    unsigned int
+    settle_faces(State &state);
 
     const SolverParameters &parameters_;
     TimeLevel              &level_;

@@ -60,7 +60,7 @@ namespace tanktread
     double
     distance_from_faces(const State &state);
 
-    /** Why a state must not be accepted: shells that overlap; empty if there is no reason. The same on all ranks. */
+    /** Why a state must not be accepted: shells that overlap, or too near to a face of a box in unbounded liquid; empty if there is no reason. The same on all ranks. */
     std::string
     refusal(const State &state);
 

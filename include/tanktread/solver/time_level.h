@@ -12,6 +12,7 @@
 #include <tanktread/solver/distributed_shell.h>
 #include <tanktread/solver/solver_memory.h>
 #include <tanktread/solver/state.h>
+#include <tanktread/solver/unbounded_liquid.h>
 
 #include <memory>
 #include <vector>
@@ -22,8 +23,9 @@ namespace tanktread
   struct Liquids
   {
     FlowInTime flow;
-    double     viscosity_ratio = 1.; // inside over outside
-    double     reynolds_number = 0.; // the density in the scene's units; 0 leaves inertia out
+    double     viscosity_ratio = 1.;    // inside over outside
+    double     reynolds_number = 0.;    // the density in the scene's units; 0 leaves inertia out
+    bool       unbounded       = false; // the box is a part of unbounded liquid: see UnboundedLiquid
 
     double
     mean_viscosity() const
@@ -120,6 +122,15 @@ namespace tanktread
     ShellFields
     shell_velocity(const State &state);
 
+    /** The flow with the velocities that it has on the faces of the box, and the spaces that it is in. Collective. */
+    FluidBlockVector
+    whole_fields(const State &state);
+    const TaylorHoodSpace &
+    whole_space() const
+    {
+      return unbounded_ ? unbounded_->faces().whole_space() : fluid_->space();
+    }
+
     /** See Residual::shell_speed. Collective. */
     double
     shell_speed(const FluidBlockVector &load) const;
@@ -199,6 +210,12 @@ namespace tanktread
     {
       return inertia_.get();
     }
+    /** Null in a box of its own. */
+    UnboundedLiquid *
+    unbounded_liquid() const
+    {
+      return unbounded_.get();
+    }
     double
     finest_cell() const
     {
@@ -206,17 +223,18 @@ namespace tanktread
     }
 
   private:
-    const Liquids           &liquids_;
-    const DistributedShell  &elasticity_;
-    Coupling                &coupling_;
-    SolverMemory            &memory_;
-    Timings                 &timings_;
-    UndisturbedFlow          flow_;
-    FluidVector              undisturbed_load_;
-    ShellFields              preconditioner_x_; // where the shells were when its viscosity was set; empty: nowhere on this mesh
-    std::unique_ptr<Inertia> inertia_;          // none without it
-    Fluid                   *fluid_ = nullptr;
-    ShellConfigurations      shells_; // where they were asked for last
+    const Liquids                   &liquids_;
+    const DistributedShell          &elasticity_;
+    Coupling                        &coupling_;
+    SolverMemory                    &memory_;
+    Timings                         &timings_;
+    UndisturbedFlow                  flow_;
+    FluidVector                      undisturbed_load_;
+    ShellFields                      preconditioner_x_; // where the shells were when its viscosity was set; empty: nowhere on this mesh
+    std::unique_ptr<Inertia>         inertia_;          // none without it
+    std::unique_ptr<UnboundedLiquid> unbounded_;        // none in a box of its own
+    Fluid                           *fluid_ = nullptr;
+    ShellConfigurations              shells_; // where they were asked for last
   };
 } // namespace tanktread
 
