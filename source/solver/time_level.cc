@@ -128,7 +128,7 @@ namespace tanktread
       preconditioner_x_ = memory_.viscosity_x;
     fluid_->set_viscosity(coupling_.viscosity(*shells(state)[0]), for_preconditioner);
     if (unbounded_)
-      unbounded_->faces().set_viscosity(*fluid_->viscosity());
+      unbounded_->set_viscosity(*fluid_->viscosity());
     undisturbed_load_.reinit(fluid_->space().velocity->partitioner());
     fluid_->viscosity()->add_excess_stress(fluid_->space(), flow_, undisturbed_load_);
   }

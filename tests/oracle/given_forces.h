@@ -196,6 +196,10 @@ namespace tanktread::oracle
           if (!flow.velocity.empty())
             velocities[c] += flow.velocity[c];
         }
+      known.fluid.reinit(2);
+      for (unsigned int b = 0; b <= pressure_block; ++b)
+        known.fluid.block(b) = flow.fields.block(b);
+      known.fluid.collect_sizes();
       UnboundedLiquid &liquid = *scene.level().unbounded_liquid();
       FluidBlockVector zero, load;
       fluid.space().reinit(zero);

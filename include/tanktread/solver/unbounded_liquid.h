@@ -16,8 +16,12 @@ namespace tanktread
    *     u(x) = 1/(8 pi) sum_I [1/|y| + y y^T/|y|^3] (F + pi v)_I + (1 - lambda)/(8 pi) sum_I 6 y (y . U_I)(y . v_I)/|y|^5,   y = x - x_I,
    *
    * the sums over the control points of all shells, v = dV/dx the area vectors that belong to them, lambda the viscosity inside and U the whole velocity of a shell
-   * less its mean, which contributes nothing. Total force, moments x F^T of the forces and v U^T of the velocities are those of the surfaces exactly; what is left
-   * of second moments on falls faster with the distance and with the square of the control points' distances.
+   * less its rigid part, which contributes nothing. Total force, moments x F^T of the forces and v U^T of the velocities are those of the surfaces exactly; what is
+   * left of second moments on falls faster with the distance and with the square of the control points' distances.
+   *
+   * With another viscosity inside, a stresslet in the middle of the shell is added that makes their sum the one of the discrete equations, -sym(sum_j x_j l_j)
+   * without its trace, l the loads that would make the same flow with viscosity 1 everywhere, over the nodes near and inside the shell. The integral of U n is
+   * multiplied by the viscosity, and with it its error.
    */
   class UnboundedLiquid
   {
@@ -25,22 +29,41 @@ namespace tanktread
     /** Shells may not come nearer to a face, in a: the cells there could not follow the flow between. */
     static constexpr double least_distance = 0.5;
 
-    /** As PrescribedVelocity. @param viscosity_ratio inside over outside. */
+    /** Keeps `space` by reference. Throws what PrescribedVelocity throws. @param viscosity_ratio inside over outside. Collective. */
     UnboundedLiquid(const TaylorHoodSpace &space, double viscosity_ratio);
 
-    /** Makes the velocities on the faces those of `state`. @param shells at its positions. @param velocities U, read with another viscosity inside only. Collective. */
+    /** To be called when the viscosity has changed; kept by reference. Collective. */
+    void
+    set_viscosity(const Viscosity &viscosity);
+
+    /**
+     * Makes the velocities on the faces those of `state`. @param shells at its positions. @param velocities U, read with another viscosity inside only.
+     * Collective. Throws std::logic_error for several shells with another viscosity inside.
+     */
     void
     set(const State &state, const ShellConfigurations &shells, const ShellFields &velocities);
 
-    PrescribedVelocity &
-    faces()
+    const PrescribedVelocity &
+    faces() const
     {
       return faces_;
     }
 
   private:
-    const double       viscosity_ratio_;
-    PrescribedVelocity faces_;
+    /** The stresslet of the discrete equations with the flow `fields`, about `centre`. Collective. */
+    Eigen::Matrix3d
+    discrete_stresslet(const FluidBlockVector &fields, const Eigen::RowVector3d &centre);
+
+    void
+    add_other_viscosity(const State &state, const ShellConfiguration &shell, const ControlPoints &velocity, Columns &on_faces);
+
+    const TaylorHoodSpace    &space_;
+    const double              viscosity_ratio_;
+    PrescribedVelocity        faces_;
+    const StokesOperator      uniform_; // viscosity 1 everywhere
+    std::vector<unsigned int> near_;    // owned nodes of the cells with another viscosity in them
+    Columns                   near_places_;
+    FluidBlockVector          loads_;
   };
 } // namespace tanktread
 
