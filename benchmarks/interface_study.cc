@@ -3,7 +3,8 @@
 //
 // Usage: interface_study [--scenes sphere2,...] [--cells 32,64,128] [--interfaces plain,enriched] [--box 40] [--coarsest 2.5] [--band 1.5] [--grading 0]
 // [--finer-shell 0]
-//                        [--repeat 3]
+//                        [--repeat 3] [--boundary faces|unbounded]
+// boundary: a box between walls and periodic faces, or in unbounded liquid.
 // One line of CSV a scene, interface and mesh on the standard output. h = 10a/cells, control mesh of level log2(cells/8) and `finer-shell` more. Scenes:
 //   sphere2, sphere4   sphere off the centre, tractions of degree 2 and 4; error against the exact flow in unbounded liquid
 //   ellipsoid          2:1:1, tilted; smooth traction (waves)
@@ -46,6 +47,7 @@ namespace
     std::vector<unsigned int> cells      = {32, 64, 128};
     double                    box = 40., coarsest = 2.5, band = 1.5;
     unsigned int              grading = 0, finer_shell = 0, repeat = 3;
+    bool                      unbounded = false;
   };
 
 
@@ -191,8 +193,8 @@ namespace
     double        coarse_power = 0.;
     for (const unsigned int cells : {128, 256})
       {
-        const Problem       problem = make_problem(name, level, options.box);
-        GivenForces         scene(problem.shape, Interface::enriched, problem.box, {10. / cells, options.coarsest, 2., 4}, {problem.centre});
+        const Problem problem = make_problem(name, level, options.box);
+        GivenForces   scene(problem.shape, Interface::enriched, problem.box, {10. / cells, options.coarsest, 2., 4}, {problem.centre}, {}, options.unbounded);
         const ControlPoints F        = problem.forces(scene);
         const ControlPoints velocity = scene.flow({F}, tolerance).velocity[0];
         const double        power    = F.cwiseProduct(velocity).sum();
@@ -211,7 +213,7 @@ namespace
 
 
   const char *const header =
-    "scene,interface,cells,level,fluid_cells,points,error,power_error,reference_error,iterations,solve_cpu,geometry_cpu,stokes_cpu,mesh_cpu,box,coarsest,band,grading";
+    "scene,interface,cells,level,fluid_cells,points,error,power_error,reference_error,iterations,solve_cpu,geometry_cpu,stokes_cpu,mesh_cpu,box,coarsest,band,grading,boundary";
 
 
   /** One line of the table. */
@@ -225,7 +227,9 @@ namespace
                       interface == "plain" ? Interface::plain : Interface::enriched,
                       problem.box,
                       {10. / cells, options.coarsest, options.band, options.grading},
-                      {problem.centre});
+                      {problem.centre},
+                      {},
+                      options.unbounded);
     const double        mesh_cpu = cpu_seconds() - start;
     const ControlPoints F        = problem.forces(scene);
 
@@ -258,7 +262,7 @@ namespace
     std::cout << name << ',' << interface << ',' << cells << ',' << level << ',' << scene.fluid.mesh().triangulation().n_global_active_cells() << ','
               << scene.coupling_surface.n_points() << ',' << error << ',' << power / wanted_power - 1. << ',' << reference_error << ',' << flow.iterations
               << ',' << solve_cpu << ',' << geometry_cpu << ',' << stokes_cpu << ',' << mesh_cpu << ',' << problem.box << ',' << options.coarsest << ','
-              << options.band << ',' << options.grading << std::endl;
+              << options.band << ',' << options.grading << ',' << (options.unbounded ? "unbounded" : "faces") << std::endl;
   }
 
 
@@ -275,7 +279,7 @@ namespace
     const ControlPoints      fine       = surface.S() * field(finest_level);
     const ControlPoints      difference = surface.S() * field(level) - fine;
     const double             error      = std::sqrt(difference.rowwise().squaredNorm().dot(weights) / fine.rowwise().squaredNorm().dot(weights));
-    std::cout << name << ",shell," << 8 * (1 << level) << ',' << level << ",,," << error << ",,,,,,,," << problem.box << ',' << options.coarsest << ",,"
+    std::cout << name << ",shell," << 8 * (1 << level) << ',' << level << ",,," << error << ",,,,,,,," << problem.box << ',' << options.coarsest << ",,,"
               << std::endl;
   }
 
@@ -324,10 +328,12 @@ namespace
           options.grading = read_list<unsigned int>(value)[0];
         else if (name == "--finer-shell")
           options.finer_shell = read_list<unsigned int>(value)[0];
+        else if (name == "--boundary" && (value == "faces" || value == "unbounded"))
+          options.unbounded = value == "unbounded";
         else if (name == "--repeat")
           options.repeat = std::max(1u, read_list<unsigned int>(value)[0]);
         else
-          throw InputError("Unknown option '" + name + "'; see the first lines of interface_study.cc.");
+          throw InputError("Unknown option '" + name + "' or value '" + value + "'; see the first lines of interface_study.cc.");
       }
     if (words.size() % 2 == 1)
       throw InputError("Option '" + words.back() + "' has no value.");
@@ -337,6 +343,8 @@ namespace
     for (const std::string &interface : options.interfaces)
       if (interface != "plain" && interface != "enriched")
         throw InputError("--interfaces: got '" + interface + "'; allowed: plain, enriched.");
+    if (options.unbounded && std::find(options.scenes.begin(), options.scenes.end(), "periodic") != options.scenes.end())
+      throw InputError("--scenes: got 'periodic' with '--boundary unbounded'; allowed: the others.");
     for (const unsigned int cells : options.cells)
       if (cells < 32 || cells > 256)
         throw InputError("--cells: got " + std::to_string(cells) + "; allowed: 32 to 256.");

@@ -136,7 +136,7 @@ def flows(args, name="flows"):
 
 def select(rows, scene, interface):
     found = sorted((row for row in rows if row["scene"] == scene and row["interface"] == interface), key=lambda row: int(row["cells"]))
-    return {name: np.array([float(row[name]) if row[name] else np.nan for row in found]) for name in rows[0] if name not in ("scene", "interface")} if found else None
+    return {name: np.array([float(row[name]) if row[name] else np.nan for row in found]) for name in rows[0] if name not in ("scene", "interface", "boundary")} if found else None
 
 
 # ------------------------------------------------------------------------------------------------------------------------ figures

@@ -46,7 +46,7 @@ namespace tanktread
         {
           run.box += " in unbounded liquid";
           run.included.push_back("the unbounded liquid beyond the box (Boundary unbounded: its flow of the shells' forces holds on all faces)");
-          run.left_out.push_back("means over a volume in suspension.csv (unbounded liquid: nan)");
+          run.left_out.push_back("means over the box in suspension.csv (unbounded liquid has no volume: nan)");
         }
       run.n_capsules = parameters.placement.centres.size();
       run.Re         = parameters.scene.reynolds_number;

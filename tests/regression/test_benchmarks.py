@@ -23,7 +23,7 @@ import numpy as np  # noqa: E402
 import run_files  # noqa: E402
 import run_scenes  # noqa: E402
 
-SCRIPTS = ["plot_run.py", "plot_study.py", "interface_study.py", "le_2010/run.py", "flows/run.py"]
+SCRIPTS = ["plot_run.py", "plot_study.py", "interface_study.py", "box_study.py", "le_2010/run.py", "flows/run.py"]
 
 
 class Repository(unittest.TestCase):
