@@ -120,6 +120,13 @@ TEST(UnboundedLiquid, NewtonEndsWithTheVelocitiesOfItsSolution)
         const NewtonReport report = scene.solver().solve(scene.state, step);
         ASSERT_TRUE(report.converged) << report.message;
         iterations.push_back(report.newton_iterations);
+        if (is_root())
+          {
+            std::cout << (unbounded ? "unbounded" : "prescribed") << ", lambda " << ratio << ", residuals";
+            for (const double residual : report.residuals)
+              std::cout << ' ' << residual;
+            std::cout << ", " << report.linear_iterations << " linear iterations" << std::endl;
+          }
         const Residual r = scene.level().residual(scene.state, step, TimeLevel::Points::stay);
         EXPECT_LT(r.shell_speed, 1e-6);
       }
