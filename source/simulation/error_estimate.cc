@@ -30,4 +30,13 @@ namespace tanktread
     result.error          = (result.is_observed ? 1.25 : 3.) * std::abs(distance);
     return result;
   }
+
+
+  ErrorEstimate
+  error_of_the_coarsest(const std::vector<double> &values, const double ratio, const double expected_order)
+  {
+    ErrorEstimate result = error_estimate(values, ratio, expected_order);
+    result.error         = 1.25 * std::abs(values.back() - result.extrapolated);
+    return result;
+  }
 } // namespace tanktread

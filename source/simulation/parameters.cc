@@ -50,7 +50,9 @@ namespace tanktread
     void
     check_study(const Parameters &parameters)
     {
-      parameters.study.check(parameters.capsule.shape == Shape::file ? -1 : int(parameters.shell_mesh.level), parameters.time.steady_tolerance > 0.);
+      parameters.study.check(parameters.capsule.shape == Shape::file ? -1 : int(parameters.shell_mesh.level),
+                             parameters.time.steady_tolerance > 0.,
+                             parameters.scene.boundary == Boundary::unbounded);
     }
 
     void

@@ -58,7 +58,7 @@ namespace tanktread
   Study::Study(const Parameters &parameters, const std::vector<std::string> &overrides, const MPI_Comm communicator)
     : communicator_(communicator)
     , log_(dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
-    , plan_(study_plan(parameters.study))
+    , plan_(study_plan(parameters.study, parameters.scene.boundary == Boundary::unbounded))
   {
     for (const StudyRun &run : plan_.runs)
       {
@@ -139,10 +139,7 @@ namespace tanktread
       std::vector<std::optional<std::map<std::string, double>>> summaries;
       for (const Parameters &parameters : parameters_)
         summaries.push_back(finished_summary(parameters.output.directory));
-      table = study_table(plan_,
-                          summaries,
-                          parameters_[0].solver.interface == Interface::enriched,
-                          parameters_[0].time.scheme != TimeScheme::backward_euler && parameters_[0].solver.coupling != TimeCoupling::explicit_euler);
+      table = study_table(plan_, summaries, parameters_[0]);
     });
     write_table(table);
     if (!failures.empty())

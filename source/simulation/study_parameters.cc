@@ -34,7 +34,7 @@ namespace tanktread
       "Vary",
       vary,
       "Causes of errors to be told apart by coarser companions of the run: mesh (cells and control mesh, spacings doubled), cells, control mesh, "
-      "step (Time/Step doubled, or Time/Tolerance eightfold), box (half the side), stop (Time/Steady tolerance fourfold), tolerances (Newton "
+      "step (Time/Step doubled, or Time/Tolerance eightfold), box (half the side, in unbounded liquid twice), stop (Time/Steady tolerance fourfold), tolerances (Newton "
       "tolerance tenfold). Empty: the run alone.",
       dealii::Patterns::List(dealii::Patterns::Selection(selection)));
     prm.add_parameter("Levels",
@@ -62,7 +62,7 @@ namespace tanktread
 
 
   void
-  StudyParameters::check(const int control_mesh_level, const bool has_stop) const
+  StudyParameters::check(const int control_mesh_level, const bool has_stop, const bool is_unbounded) const
   {
     const auto names = [this](const Cause cause) { return std::count(vary.begin(), vary.end(), word(cause)); };
     for (const Cause cause : causes())
@@ -72,6 +72,8 @@ namespace tanktread
       throw InputError("Study/Vary names mesh beside cells or control mesh; mesh is both of them");
     if (names(Cause::stop) > 0 && !has_stop)
       throw InputError("Study/Vary names stop; allowed with Time/Steady tolerance > 0");
+    if (is_unbounded && together && names(Cause::box) > 0)
+      throw InputError("Study/Vary names box; allowed with Study/Together and Scene/Boundary = unbounded: what is coarser in companions, the box is larger");
     // The frugal companions of other causes have a mesh that is coarser once, which is no coarser than the last companion of the mesh.
     const int coarsenings = names(Cause::mesh) + names(Cause::control_mesh) > 0 ? int(levels) - 1 : 0;
     if (coarsenings > 0 && control_mesh_level < coarsenings)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: error bars of the numbers of a run, split by cause.
 
+#include <tanktread/simulation/parameters.h>
 #include <tanktread/simulation/study_table.h>
 
 #include <algorithm>
@@ -36,7 +37,10 @@ namespace tanktread
             return std::nullopt;
           values.push_back(summaries[run]->at(quantity));
         }
-      return error_estimate(values, series.ratio(), order);
+      if (!series.is_finer)
+        return error_estimate(values, series.ratio(), order);
+      std::reverse(values.begin(), values.end());
+      return error_of_the_coarsest(values, series.ratio(), order);
     }
   } // namespace
 
@@ -135,10 +139,7 @@ namespace tanktread
 
 
   StudyTable
-  study_table(const StudyPlan                                                 &plan,
-              const std::vector<std::optional<std::map<std::string, double>>> &summaries,
-              const bool                                                       is_enriched,
-              const bool                                                       is_second_order_in_time)
+  study_table(const StudyPlan &plan, const std::vector<std::optional<std::map<std::string, double>>> &summaries, const Parameters &parameters)
   {
     StudyTable table;
     for (const StudySeries &series : plan.series)
@@ -147,7 +148,7 @@ namespace tanktread
       {
         StudyRow row{quantity, value, {}};
         for (const StudySeries &series : plan.series)
-          row.estimates.push_back(estimate(series, quantity, summaries, series.expected_order(is_enriched, is_second_order_in_time)));
+          row.estimates.push_back(estimate(series, quantity, summaries, series.expected_order(parameters)));
         table.rows.push_back(std::move(row));
       }
     return table;

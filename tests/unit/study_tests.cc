@@ -83,7 +83,7 @@ TEST(ErrorEstimate, RefusesWhatTellsNothing)
 
 TEST(StudyPlan, VariesEachCauseAlone)
 {
-  const StudyPlan plan = study_plan(study_of({"cells", "step"}, 3));
+  const StudyPlan plan = study_plan(study_of({"cells", "step"}, 3), false);
   EXPECT_EQ(names(plan), (std::vector<std::string>{"", "cells-1", "cells-2", "step-1", "step-2"}));
   ASSERT_EQ(plan.series.size(), 2u);
   EXPECT_EQ(plan.series[0].runs, (std::vector<std::size_t>{0, 1, 2}));
@@ -92,7 +92,7 @@ TEST(StudyPlan, VariesEachCauseAlone)
 
 TEST(StudyPlan, FrugallyVariesTheOthersOnTheCoarserMesh)
 {
-  const StudyPlan plan = study_plan(study_of({"step", "mesh", "box"}));
+  const StudyPlan plan = study_plan(study_of({"step", "mesh", "box"}), false);
   EXPECT_EQ(names(plan), (std::vector<std::string>{"", "mesh-1", "mesh-1_step-1", "mesh-1_box-1"}));
   EXPECT_EQ(plan.series[0].runs, (std::vector<std::size_t>{1, 2}));
   EXPECT_EQ(plan.series[1].runs, (std::vector<std::size_t>{0, 1}));
@@ -103,12 +103,14 @@ TEST(StudyPlan, VariesAllTogether)
 {
   StudyParameters study = study_of({"mesh", "step"}, 3);
   study.together        = true;
-  const StudyPlan plan  = study_plan(study);
+  const StudyPlan plan  = study_plan(study, false);
   EXPECT_EQ(names(plan), (std::vector<std::string>{"", "mesh-1_step-1", "mesh-2_step-2"}));
   ASSERT_EQ(plan.series.size(), 1u);
   EXPECT_EQ(plan.series[0].name(), "mesh, step");
-  EXPECT_EQ(plan.series[0].expected_order(true, true), 2.);
-  EXPECT_EQ(plan.series[0].expected_order(false, true), 1.);
+  Parameters parameters;
+  EXPECT_EQ(plan.series[0].expected_order(parameters), 2.);
+  parameters.solver.interface = Interface::plain;
+  EXPECT_EQ(plan.series[0].expected_order(parameters), 1.);
 }
 
 TEST(StudyPlan, SaysWhatACompanionSets)
@@ -126,18 +128,32 @@ TEST(StudyPlan, SaysWhatACompanionSets)
 
 TEST(StudyParameters, RefuseWhatCannotBeVaried)
 {
-  EXPECT_NO_THROW(study_of({"mesh", "stop"}).check(1, true));
-  EXPECT_THROW(study_of({"mesh", "cells"}).check(3, true), InputError);
-  EXPECT_THROW(study_of({"step", "step"}).check(3, true), InputError);
-  EXPECT_THROW(study_of({"stop"}).check(3, false), InputError);
-  EXPECT_THROW(study_of({"mesh"}, 3).check(1, true), InputError);
-  EXPECT_THROW(study_of({"control mesh"}).check(-1, true), InputError);
+  EXPECT_NO_THROW(study_of({"mesh", "stop"}).check(1, true, false));
+  EXPECT_THROW(study_of({"mesh", "cells"}).check(3, true, false), InputError);
+  EXPECT_THROW(study_of({"step", "step"}).check(3, true, false), InputError);
+  EXPECT_THROW(study_of({"stop"}).check(3, false, false), InputError);
+  EXPECT_THROW(study_of({"mesh"}, 3).check(1, true, false), InputError);
+  EXPECT_THROW(study_of({"control mesh"}).check(-1, true, false), InputError);
+}
+
+TEST(StudyPlan, TakesLargerBoxesInUnboundedLiquid)
+{
+  Parameters parameters;
+  parameters.scene.boundary = Boundary::unbounded;
+  parameters.scene.box_side = {7.5};
+  const StudyPlan plan      = study_plan(study_of({"box"}), true);
+  const auto      sets      = changes(parameters, plan.runs[1]);
+  EXPECT_EQ(std::count(sets.begin(), sets.end(), "Scene/Box side=15"), 1);
+  // The run is 32 times as far from the limit as its companion.
+  const StudyTable table = study_table(plan, {{{{"D", 1.032}}}, {{{"D", 1.001}}}}, parameters);
+  EXPECT_NEAR(table.rows[0].estimates[0]->extrapolated, 1., 1e-12);
+  EXPECT_NEAR(table.rows[0].error(), 1.25 * 0.032, 1e-12);
 }
 
 TEST(StudyTable, AddsTheBarsAndSaysWhatIsMissing)
 {
-  const StudyPlan  plan  = study_plan(study_of({"cells", "step"}));
-  const StudyTable table = study_table(plan, {{{{"D", 1.}, {"w", 2.}}}, {{{"D", 1.03}}}, {{{"D", 0.7}, {"w", 2.}}}}, true, true);
+  const StudyPlan  plan  = study_plan(study_of({"cells", "step"}), false);
+  const StudyTable table = study_table(plan, {{{{"D", 1.}, {"w", 2.}}}, {{{"D", 1.03}}}, {{{"D", 0.7}, {"w", 2.}}}}, Parameters());
   ASSERT_EQ(table.rows.size(), 2u);
   EXPECT_NEAR(table.rows[0].error(), 0.03 + 0.3, 1e-14); // differences by 2^2 - 1, times 3
   EXPECT_TRUE(table.rows[0].is_complete());

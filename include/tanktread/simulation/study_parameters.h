@@ -56,7 +56,7 @@ namespace tanktread
      * cannot vary.
      */
     void
-    check(int control_mesh_level, bool has_stop) const;
+    check(int control_mesh_level, bool has_stop, bool is_unbounded) const;
   };
 } // namespace tanktread
 

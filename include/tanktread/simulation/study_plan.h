@@ -14,7 +14,7 @@ namespace tanktread
 {
   struct Parameters;
 
-  /** A run with some causes coarser than in the parameter file, each so many times. */
+  /** A run with some causes coarser than in the parameter file, each so many times. In unbounded liquid, where it costs little, a box is larger instead. */
   struct StudyRun
   {
     std::map<Cause, unsigned int> coarser;
@@ -24,11 +24,12 @@ namespace tanktread
     name() const;
   };
 
-  /** Runs, by their numbers, that differ by the causes alone: the finest first. */
+  /** Runs, by their numbers, that differ by the causes alone: the one whose error is wanted first, each of the others once more coarser (or finer). */
   struct StudySeries
   {
     std::vector<Cause>       causes; // more than one: varied together
     std::vector<std::size_t> runs;
+    bool                     is_finer = false; // the companions: a larger box in unbounded liquid
 
     /** "step", or "mesh, step" for several. */
     std::string
@@ -38,7 +39,7 @@ namespace tanktread
     double
     ratio() const;
     double
-    expected_order(bool is_enriched, bool is_second_order_in_time) const;
+    expected_order(const Parameters &parameters) const;
   };
 
   struct StudyPlan
@@ -47,8 +48,9 @@ namespace tanktread
     std::vector<StudySeries> series;
   };
 
+  /** @param larger_box whether the companions that tell the error of the box have larger ones. */
   StudyPlan
-  study_plan(const StudyParameters &study);
+  study_plan(const StudyParameters &study, bool larger_box);
 
   /** What is set, as "Section/Parameter=value", to make a companion of a run with these parameters. */
   std::vector<std::string>

@@ -45,12 +45,9 @@ namespace tanktread
     as_text() const;
   };
 
-  /** @param summaries of each run of the plan, nothing where it has failed; the first one is there. */
+  /** @param summaries of each run of the plan, nothing where it has failed; the first one is there. @param parameters of the run itself. */
   StudyTable
-  study_table(const StudyPlan                                                 &plan,
-              const std::vector<std::optional<std::map<std::string, double>>> &summaries,
-              bool                                                             is_enriched,
-              bool                                                             is_second_order_in_time);
+  study_table(const StudyPlan &plan, const std::vector<std::optional<std::map<std::string, double>>> &summaries, const Parameters &parameters);
 } // namespace tanktread
 
 #endif
