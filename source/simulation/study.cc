@@ -10,6 +10,7 @@
 #include <tanktread/simulation/study.h>
 
 #include <chrono>
+#include <cmath>
 #include <fstream>
 #include <sstream>
 
@@ -119,10 +120,7 @@ namespace tanktread
     log_.line("\nStudy: error bars by cause, in brackets observed orders; " + folder + "/study.csv\n" + table.as_text());
     if (own_seconds_ > 0.)
       {
-        std::ostringstream text;
-        text.precision(2);
-        text << "The companions took " << 100. * companion_seconds_ / own_seconds_ << " % of the time of the run.";
-        log_.line(text.str());
+        log_.line("The companions took " + std::to_string(std::lround(100. * companion_seconds_ / own_seconds_)) + " % of the time of the run.");
       }
   }
 
