@@ -18,13 +18,7 @@ namespace tanktread
     TANKTREAD_INLINE void
     multiply_by_laplace(V *u, const V size, const V mass_factor = V{})
     {
-      for (int k = 0; k < 9; ++k)
-        to_modes(u[3 * k], u[3 * k + 1], u[3 * k + 2]);
-      for (int k = 0; k < 3; ++k)
-        for (int i = 0; i < 3; ++i)
-          to_modes(u[9 * k + i], u[9 * k + i + 3], u[9 * k + i + 6]);
-      for (int i = 0; i < 9; ++i)
-        to_modes(u[i], u[i + 9], u[i + 18]);
+      to_all_modes(u);
       // On the unit interval M = sum_m mass_m r_m r_m^T and K = sum_m mass_m eigenvalue_m r_m r_m^T with the rows r_m of to_modes().
       constexpr Number mass[3] = {Number(1. / 36), Number(1. / 12), Number(1. / 45)}, eigenvalue[3] = {0, 12, 60};
       for (int k = 0; k < 3; ++k)
@@ -34,13 +28,7 @@ namespace tanktread
               u[i + 3 * j + 9 * k] *= (size * (eigenvalue[i] + eigenvalue[j] + eigenvalue[k]) + mass_factor) * (mass[i] * mass[j] * mass[k]);
             else
               u[i + 3 * j + 9 * k] *= size * (mass[i] * mass[j] * mass[k] * (eigenvalue[i] + eigenvalue[j] + eigenvalue[k]));
-      for (int i = 0; i < 9; ++i)
-        from_modes(u[i], u[i + 9], u[i + 18]);
-      for (int k = 0; k < 3; ++k)
-        for (int i = 0; i < 3; ++i)
-          from_modes(u[9 * k + i], u[9 * k + i + 3], u[9 * k + i + 6]);
-      for (int k = 0; k < 9; ++k)
-        from_modes(u[3 * k], u[3 * k + 1], u[3 * k + 2]);
+      from_all_modes(u);
     }
 
 

@@ -81,6 +81,7 @@ namespace tanktread
       mu += (mu - viscosity.least()) / 3.;
     set_viscosity(of_diagonal);
     least_ = viscosity.least();
+    zeros_.assign(space_.n_cells(), 0.);
     cut_sizes_.clear();
     cut_nodes_.clear();
     cut_viscosities_.clear();
@@ -115,8 +116,7 @@ namespace tanktread
     add_viscous(instructions_, {n_cut, cut_sizes_.data(), cut_nodes_.data(), nullptr}, cut_viscosities_.data(), u, y);
     if (masses_.empty())
       return;
-    const std::vector<double> none(all.n, 0.);
-    add_helmholtz(instructions_, {all.n, none.data(), all.velocity_nodes, nullptr}, masses_.data(), u, y);
+    add_helmholtz(instructions_, {all.n, zeros_.data(), all.velocity_nodes, nullptr}, masses_.data(), u, y);
   }
 
 

@@ -76,7 +76,7 @@ namespace tanktread
       boundary,
       {{"faces", Boundary::faces}, {"unbounded", Boundary::unbounded}},
       "What the liquid meets at the faces of the box. faces: what 'Box faces' says. unbounded: more of the same liquid, without end; on all faces the "
-      "velocity is what the shells' forces make in unbounded liquid, and the undisturbed flow. A box of 8 a does for a capsule. Without inertia.");
+      "velocity is what the shells' forces make in unbounded liquid, and the undisturbed flow. A box of 7.5 a does for a capsule. Without inertia.");
     prm.add_parameter("Box side",
                       box_side,
                       "Side of the box, in a, whose middle is the origin: one number, or three along x, y and z.",

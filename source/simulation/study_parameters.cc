@@ -45,8 +45,7 @@ namespace tanktread
     prm.add_parameter(
       "Frugal",
       frugal,
-      "Whether the other causes are varied on a mesh that is coarser once, where mesh is among them: for a few per cent of an error bar, less than half "
-      "of the time.");
+      "Whether the other causes are varied on a mesh that is coarser once, where mesh is among them: what they are worth depends little on the mesh.");
     prm.leave_subsection();
   }
 

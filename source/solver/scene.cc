@@ -108,10 +108,13 @@ namespace tanktread
     std::ostringstream message;
     if (dealii::Utilities::MPI::broadcast(communicator_, smallest.gap, 0) <= 0.)
       message << "capsules " << smallest.first + 1 << " and " << smallest.second + 1 << " overlap by " << std::abs(smallest.gap) << " a";
-    else if (const double distance = dealii::Utilities::MPI::broadcast(communicator_, distance_from_faces(state), 0);
-             description_.liquids.unbounded && distance < UnboundedLiquid::least_distance)
-      message << "a capsule is " << distance << " a from a face of the box, less than the " << UnboundedLiquid::least_distance
-              << " a that unbounded liquid needs (Scene/Box side)";
+    else if (description_.liquids.unbounded)
+      {
+        const double distance = dealii::Utilities::MPI::broadcast(communicator_, distance_from_faces(state), 0);
+        if (distance < UnboundedLiquid::least_distance)
+          message << "a capsule is " << distance << " a from a face of the box, less than the " << UnboundedLiquid::least_distance
+                  << " a that unbounded liquid needs (Scene/Box side)";
+      }
     return message.str();
   }
 } // namespace tanktread

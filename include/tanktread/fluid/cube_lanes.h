@@ -151,6 +151,35 @@ namespace tanktread
     }
 
 
+    /** Along three axes of nodes. */
+    template <typename V>
+    TANKTREAD_INLINE void
+    to_all_modes(V *u)
+    {
+      for (int k = 0; k < 9; ++k)
+        to_modes(u[3 * k], u[3 * k + 1], u[3 * k + 2]);
+      for (int k = 0; k < 3; ++k)
+        for (int i = 0; i < 3; ++i)
+          to_modes(u[9 * k + i], u[9 * k + i + 3], u[9 * k + i + 6]);
+      for (int i = 0; i < 9; ++i)
+        to_modes(u[i], u[i + 9], u[i + 18]);
+    }
+
+
+    template <typename V>
+    TANKTREAD_INLINE void
+    from_all_modes(V *u)
+    {
+      for (int i = 0; i < 9; ++i)
+        from_modes(u[i], u[i + 9], u[i + 18]);
+      for (int k = 0; k < 3; ++k)
+        for (int i = 0; i < 3; ++i)
+          from_modes(u[9 * k + i], u[9 * k + i + 3], u[9 * k + i + 6]);
+      for (int k = 0; k < 9; ++k)
+        from_modes(u[3 * k], u[3 * k + 1], u[3 * k + 2]);
+    }
+
+
     // ---- Divergence ----
 
     /**

@@ -73,6 +73,7 @@ namespace tanktread
     std::vector<double>       cut_sizes_;
     std::vector<unsigned int> cut_nodes_;
     std::vector<Number>       cut_viscosities_;
+    std::vector<double>       zeros_;  // one a cell
     std::vector<double>       masses_; // shift times the cells' volumes; empty without a shift
   };
 } // namespace tanktread
