@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: the Taylor-Hood element matrices of cubes, applied without being stored.
 
-#include <tanktread/fluid/cube_lanes.h>
+#include <tanktread/fluid/cube_modes.h>
 
 #include <initializer_list>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: the strain form on cubes, each of one viscosity.
 
-#include <tanktread/fluid/cube_lanes.h>
+#include <tanktread/fluid/cube_modes.h>
 
 namespace tanktread
 {
