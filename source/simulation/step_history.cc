@@ -5,105 +5,141 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
-#include <vector>
+#include <cstdlib>
 
 namespace tanktread
 {
+  namespace
+  {
+    constexpr std::size_t max_levels = 4;
+  }
+
+
   void
   StepHistory::add(const double time, const ShellFields &x)
   {
     levels_.push_front({time, x});
-    if (levels_.size() > 3)
+    if (levels_.size() > max_levels)
       levels_.pop_back();
   }
 
 
-  template <typename Formula>
-  ShellSteps
-  StepHistory::each_capsule(const Formula &formula) const
+  const SdirkScheme *
+  StepHistory::one_step_scheme() const
   {
-    ShellSteps result;
+    const unsigned int q = order(parameters_.scheme);
+    return is_multistep(parameters_.scheme) && levels_.size() >= q ? nullptr : &sdirk(q);
+  }
+
+
+  std::vector<double>
+  StepHistory::times(const double length, const std::size_t n) const
+  {
+    std::vector<double> result = {levels_[0].time + length};
+    for (std::size_t i = 0; i < n; ++i)
+      result.push_back(levels_[i].time);
+    return result;
+  }
+
+
+  MultistepFormula
+  StepHistory::multistep(const double length) const
+  {
+    return backward_differentiation(times(length, order(parameters_.scheme)));
+  }
+
+
+  unsigned int
+  StepHistory::n_stages() const
+  {
+    const SdirkScheme *const scheme = one_step_scheme();
+    return scheme == nullptr ? 1 : scheme->ends.size();
+  }
+
+
+  double
+  StepHistory::stage_end(const unsigned int i) const
+  {
+    const SdirkScheme *const scheme = one_step_scheme();
+    return scheme == nullptr ? 1. : scheme->ends[i];
+  }
+
+
+  ShellSteps
+  StepHistory::stage(const unsigned int i, const double length, const std::vector<ShellFields> &displacements) const
+  {
+    if (const SdirkScheme *const scheme = one_step_scheme())
+      {
+        ShellSteps result{levels_[0].x, scheme->gamma * length};
+        for (unsigned int j = 0; j < i; ++j)
+          for (std::size_t c = 0; c < result.xhat.size(); ++c)
+            result.xhat[c] += scheme->weights[i][j] * displacements[j][c];
+        return result;
+      }
+    const MultistepFormula formula = multistep(length);
+    ShellSteps             result{{}, formula.tau};
     for (std::size_t c = 0; c < levels_[0].x.size(); ++c)
       {
-        const ImplicitStep of_capsule = formula(c);
-        result.xhat.push_back(of_capsule.xhat);
-        result.tau = of_capsule.tau;
+        result.xhat.push_back(formula.weights[0] * levels_[0].x[c]);
+        for (std::size_t k = 1; k < formula.weights.size(); ++k)
+          result.xhat[c] += formula.weights[k] * levels_[k].x[c];
       }
     return result;
   }
 
 
-  ShellSteps
-  StepHistory::step(const double length) const
+  StageWeights
+  StepHistory::stage_weights(const unsigned int i, const double length) const
   {
-    if (starts())
-      throw std::logic_error("StepHistory: a step of BDF2 looks back to two levels.");
-    return each_capsule([&](const std::size_t c) {
-      return is_second_order() ? bdf2_step(levels_[0].x[c], levels_[1].x[c], length, levels_[0].time - levels_[1].time)
-                               : backward_euler_step(levels_[0].x[c], length);
-    });
-  }
-
-
-  ShellSteps
-  StepHistory::first_stage(const double length) const
-  {
-    return each_capsule([&](const std::size_t c) { return sdirk2_stage(levels_[0].x[c], length); });
-  }
-
-
-  ShellSteps
-  StepHistory::second_stage(const double length, const ShellFields &displacement) const
-  {
-    return each_capsule([&](const std::size_t c) { return sdirk2_step(levels_[0].x[c], displacement[c], length); });
-  }
-
-
-  std::array<double, 2>
-  StepHistory::second_stage_weights()
-  {
-    const double stage = (1. - sdirk2_gamma) / sdirk2_gamma;
-    return {{stage, 1. - stage}};
-  }
-
-
-  std::array<double, 2>
-  StepHistory::weights(const double length) const
-  {
-    if (!is_second_order())
-      return {{1., 0.}};
-    const double omega = length / (levels_[0].time - levels_[1].time);
-    return {{(1. + omega) * (1. + omega) / (1. + 2. * omega), -omega * omega / (1. + 2. * omega)}};
+    const SdirkScheme *const scheme = one_step_scheme();
+    if (scheme == nullptr)
+      return {{}, multistep(length).weights};
+    // The displacement of stage j is what it has gained over its own explicit part.
+    StageWeights result{std::vector<double>(i, 0.), {1.}};
+    for (unsigned int j = 0; j < i; ++j)
+      {
+        const double       weight  = scheme->weights[i][j];
+        const StageWeights earlier = stage_weights(j, length);
+        result.stages[j] += weight;
+        for (unsigned int k = 0; k < j; ++k)
+          result.stages[k] -= weight * earlier.stages[k];
+        result.levels[0] -= weight * earlier.levels[0];
+      }
+    return result;
   }
 
 
   double
   StepHistory::local_error(const double length, const ShellFields &x) const
   {
-    const std::size_t order = is_second_order() ? 2 : 1;
-    if (levels_.size() < order + 1)
+    const std::size_t q = order(parameters_.scheme);
+    if (levels_.size() < q + 1)
       return 0.;
 
-    std::vector<double> times = {levels_[0].time + length};
-    for (std::size_t i = 0; i <= order; ++i)
-      times.push_back(levels_[i].time);
-    double       sum = 0.;
-    Eigen::Index n   = 0;
+    const std::vector<double> times = this->times(length, q + 1);
+    double                    sum   = 0.;
+    Eigen::Index              n     = 0;
     for (std::size_t c = 0; c < x.size(); ++c)
       {
-        // Divided difference of order + 2 positions, the new one first: derivative of that order over its factorial.
+        // Divided difference of q + 2 positions, the new one first: derivative of order q + 1 over its factorial.
         std::vector<ControlPoints> differences = {x[c]};
-        for (std::size_t i = 0; i <= order; ++i)
+        for (std::size_t i = 0; i <= q; ++i)
           differences.push_back(levels_[i].x[c]);
-        for (std::size_t k = 1; k <= order + 1; ++k)
-          for (std::size_t i = 0; i + k <= order + 1; ++i)
+        for (std::size_t k = 1; k <= q + 1; ++k)
+          for (std::size_t i = 0; i + k <= q + 1; ++i)
             differences[i] = (differences[i] - differences[i + 1]) / (times[i] - times[i + k]);
         sum += differences[0].squaredNorm();
         n += x[c].rows();
       }
-    const double omega  = length / (times[1] - times[2]);
-    const double weight = order == 1 ? length * length : (1. + omega) * (1. + omega) / (omega * (1. + 2. * omega)) * length * length * length;
+    double weight;
+    if (const SdirkScheme *const scheme = one_step_scheme())
+      weight = std::abs(scheme->error_constant) * std::tgamma(q + 2.) * std::pow(length, q + 1.);
+    else
+      {
+        weight = multistep(length).tau;
+        for (std::size_t i = 1; i <= q; ++i)
+          weight *= times[0] - times[i];
+      }
     return weight * std::sqrt(sum / n);
   }
 
@@ -111,17 +147,18 @@ namespace tanktread
   ShellFields
   StepHistory::at(const double time) const
   {
-    ShellFields x;
+    const std::size_t n = std::min<std::size_t>(levels_.size(), std::max(3u, order(parameters_.scheme) + 1));
+    ShellFields       x;
     for (const ControlPoints &last : levels_[0].x)
       x.push_back(ControlPoints::Zero(last.rows(), 3));
-    for (const Level &level : levels_)
+    for (std::size_t i = 0; i < n; ++i)
       {
         double weight = 1.;
-        for (const Level &other : levels_)
-          if (other.time != level.time)
-            weight *= (time - other.time) / (level.time - other.time);
+        for (std::size_t j = 0; j < n; ++j)
+          if (j != i)
+            weight *= (time - levels_[j].time) / (levels_[i].time - levels_[j].time);
         for (std::size_t c = 0; c < x.size(); ++c)
-          x[c] += weight * level.x[c];
+          x[c] += weight * levels_[i].x[c];
       }
     return x;
   }
@@ -132,8 +169,7 @@ namespace tanktread
   {
     if (parameters_.tolerance == 0.)
       return 1.5;
-    const double order = is_second_order() ? 2. : 1.;
-    return std::clamp(0.9 * std::pow(parameters_.tolerance / (local_error + 1e-300), 1. / (order + 1.)), 0.3, 1.5);
+    return std::clamp(0.9 * std::pow(parameters_.tolerance / (local_error + 1e-300), 1. / (order(parameters_.scheme) + 1.)), 0.3, 1.5);
   }
 
 

@@ -98,9 +98,8 @@ namespace tanktread
   double
   StudySeries::expected_order(const Parameters &parameters) const
   {
-    const bool is_enriched             = parameters.solver.interface == Interface::enriched;
-    const bool is_second_order_in_time = parameters.time.scheme == TimeScheme::bdf2 && parameters.solver.coupling == TimeCoupling::implicit_newton;
-    double     lowest                  = 6.;
+    const bool is_enriched = parameters.solver.interface == Interface::enriched;
+    double     lowest      = 6.;
     for (const Cause cause : causes)
       switch (cause)
         {
@@ -112,7 +111,7 @@ namespace tanktread
             lowest = std::min(lowest, 2.);
             break;
           case Cause::step:
-            lowest = std::min(lowest, is_second_order_in_time ? 2. : 1.);
+            lowest = std::min<double>(lowest, parameters.solver.coupling == TimeCoupling::implicit_newton ? order(parameters.time.scheme) : 1);
             break;
           case Cause::box: // (a/l)^3 between faces; in unbounded liquid what is left of the far field falls faster, as seen
             lowest = std::min(lowest, parameters.scene.boundary == Boundary::unbounded ? 5. : 3.);

@@ -65,19 +65,20 @@ namespace tanktread
 
 
   State
-  TimeStepper::extrapolation(const std::vector<std::pair<double, const State *>> &levels, const double time) const
+  TimeStepper::extrapolation(const Levels &levels, const double time) const
   {
+    const std::size_t          n = std::min<std::size_t>(levels.size(), 3);
     std::vector<State>         carried;
     std::vector<const State *> states;
     std::vector<double>        weights;
-    for (const auto &[now, state] : levels)
+    for (std::size_t i = 0; i < n; ++i)
       {
-        carried.push_back(*state);
+        carried.push_back(*levels[i].second);
         scene_.level().carry_pressure(carried.back());
         double weight = 1.;
-        for (const auto &[other, unused] : levels)
-          if (other != now)
-            weight *= (time - other) / (now - other);
+        for (std::size_t j = 0; j < n; ++j)
+          if (j != i)
+            weight *= (time - levels[j].first) / (levels[i].first - levels[j].first);
         weights.push_back(weight);
       }
     for (const State &state : carried)
@@ -86,73 +87,71 @@ namespace tanktread
   }
 
 
-  State
-  TimeStepper::guess(const State &state, const double now, const double time) const
+  FluidVector
+  TimeStepper::uhat(const StageWeights &weights, const State &state, const std::deque<State> &stages) const
   {
-    std::vector<std::pair<double, const State *>> levels = {{now, &state}};
-    for (const StepMemory::Level &level : memory_.previous)
-      levels.emplace_back(level.time, &level.state);
-    return extrapolation(levels, time);
+    FluidVector result;
+    if (!scene_.level().has_inertia())
+      return result;
+    result = state.fluid.block(velocity_block);
+    result *= weights.levels[0];
+    for (std::size_t i = 1; i < weights.levels.size(); ++i)
+      result.add(weights.levels[i], memory_.previous[i - 1].state.fluid.block(velocity_block));
+    for (std::size_t j = 0; j < stages.size(); ++j)
+      result.add(weights.stages[j], stages[j].fluid.block(velocity_block));
+    return result;
   }
 
 
-  NewtonReport
-  TimeStepper::solve_level(const ShellSteps            &steps,
-                           const double                 time,
-                           const std::array<double, 2> &weights,
-                           const State                 &last,
-                           const State                 *before,
-                           State                       &next)
+  ShellFields
+  TimeStepper::displacement(const State &stage, const ShellFields &xhat) const
   {
-    FluidVector uhat;
-    if (scene_.level().has_inertia())
-      {
-        uhat = last.fluid.block(velocity_block);
-        uhat *= weights[0];
-        if (weights[1] != 0.)
-          uhat.add(weights[1], before->fluid.block(velocity_block));
-      }
-    return scene_.solver().solve(next, {steps.xhat, steps.tau, time, &uhat});
-  }
-
-
-  NewtonReport
-  TimeStepper::starting_step(const State &state, const double time, const double length, State &next)
-  {
-    const double stage_length = sdirk2_gamma * length;
-    State        stage        = state;
-    NewtonReport first        = solve_level(memory_.history.first_stage(length), time + stage_length, {{1., 0.}}, state, nullptr, stage);
-    if (!first.converged || scene_.coupling().jumps().n_coarse_cut_cells() > 0)
-      {
-        next = std::move(stage);
-        return first;
-      }
-    // What the velocities have moved: not what sets the volume right, which the second stage does once for the whole step.
     const ShellConfigurations &shells = scene_.level().shells(stage);
-    ShellFields                displacement;
+    ShellFields                result;
     for (std::size_t c = 0; c < shells.size(); ++c)
-      displacement.push_back(stage.capsules[c].x - state.capsules[c].x - stage.capsules[c].volume_shift * shells[c]->normal_field());
-    next = extrapolation({{time + stage_length, &stage}, {time, &state}}, time + length);
-    NewtonReport second =
-      solve_level(memory_.history.second_stage(length, displacement), time + length, memory_.history.second_stage_weights(), stage, &state, next);
-    second.newton_iterations += first.newton_iterations;
-    second.linear_iterations += first.linear_iterations;
-    return second;
+      result.push_back(stage.capsules[c].x - xhat[c] - stage.capsules[c].volume_shift * shells[c]->normal_field());
+    return result;
+  }
+
+
+  NewtonReport
+  TimeStepper::solve_stages(const State &state, const double time, const double length, Levels levels, State &next)
+  {
+    const StepHistory       &history = memory_.history;
+    const unsigned int       n       = history.n_stages();
+    std::deque<State>        stages; // does not move what it holds, which `levels` points to
+    std::vector<ShellFields> displacements;
+    NewtonReport             report;
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        const double      end       = time + history.stage_end(i) * length;
+        const ShellSteps  step      = history.stage(i, length, displacements);
+        const FluidVector uhat      = this->uhat(history.stage_weights(i, length), state, stages);
+        next                        = extrapolation(levels, end);
+        const NewtonReport of_stage = scene_.solver().solve(next, {step.xhat, step.tau, end, &uhat});
+        report.converged            = of_stage.converged;
+        report.message              = of_stage.message;
+        report.residuals            = of_stage.residuals;
+        report.newton_iterations += of_stage.newton_iterations;
+        report.linear_iterations += of_stage.linear_iterations;
+        if (!report.converged || i + 1 == n || scene_.coupling().jumps().n_coarse_cut_cells() > 0)
+          break;
+        displacements.push_back(displacement(next, step.xhat));
+        stages.push_back(std::move(next));
+        levels.emplace_front(end, &stages.back());
+      }
+    return report;
   }
 
 
   NewtonReport
   TimeStepper::try_step(const State &state, const double time, const double length, const bool from_extrapolation, State &next)
   {
-    NewtonReport report;
-    if (memory_.history.starts())
-      report = starting_step(state, time, length, next);
-    else
-      {
-        next                = from_extrapolation ? guess(state, time, time + length) : state;
-        const State *before = memory_.previous.empty() ? nullptr : &memory_.previous.front().state;
-        report              = solve_level(memory_.history.step(length), time + length, memory_.history.weights(length), state, before, next);
-      }
+    Levels levels = {{time, &state}};
+    if (from_extrapolation)
+      for (const StepMemory::Level &level : memory_.previous)
+        levels.emplace_back(level.time, &level.state);
+    const NewtonReport report = solve_stages(state, time, length, std::move(levels), next);
     if (!report.converged)
       {
         std::ostringstream text;

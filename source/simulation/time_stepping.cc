@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Part of Tanktread: section "Time", and the time schemes as formulas.
+// Part of Tanktread: section "Time".
 
 #include <tanktread/base/enum_parameter.h>
 #include <tanktread/simulation/time_stepping.h>
@@ -11,11 +11,17 @@ namespace tanktread
   {
     using dealii::Patterns::Double;
     prm.enter_subsection("Time");
-    add_enum_parameter(prm,
-                       "Scheme",
-                       scheme,
-                       {{"BDF2", TimeScheme::bdf2}, {"backward Euler", TimeScheme::backward_euler}},
-                       "BDF2: second order, variable steps, started by one of SDIRK2, which is solved in two stages; backward Euler: first order.");
+    add_enum_parameter(
+      prm,
+      "Scheme",
+      scheme,
+      {{"BDF2", TimeScheme::bdf2},
+       {"BDF3", TimeScheme::bdf3},
+       {"SDIRK2", TimeScheme::sdirk2},
+       {"SDIRK3", TimeScheme::sdirk3},
+       {"backward Euler", TimeScheme::backward_euler}},
+      "BDF2, BDF3: second and third order, one solution a step, started by steps of SDIRK2 or SDIRK3; SDIRK2, SDIRK3: second and third order, two "
+      "and three solutions a step; backward Euler: first order.");
     prm.add_parameter(
       "Step",
       step,
@@ -30,34 +36,5 @@ namespace tanktread
                       "The run ends when semi-axes (in a) and inclination (in radians) change slower than this per unit of time; 0: at the end time only.",
                       Double(0., 1.));
     prm.leave_subsection();
-  }
-
-
-  ImplicitStep
-  backward_euler_step(const ControlPoints &x_n, const double dt)
-  {
-    return {x_n, dt};
-  }
-
-
-  ImplicitStep
-  bdf2_step(const ControlPoints &x_n, const ControlPoints &x_previous, const double dt, const double dt_previous)
-  {
-    const double omega = dt / dt_previous, denominator = 1. + 2. * omega;
-    return {((1. + omega) * (1. + omega) * x_n - omega * omega * x_previous) / denominator, dt * (1. + omega) / denominator};
-  }
-
-
-  ImplicitStep
-  sdirk2_stage(const ControlPoints &x_n, const double dt)
-  {
-    return backward_euler_step(x_n, sdirk2_gamma * dt);
-  }
-
-
-  ImplicitStep
-  sdirk2_step(const ControlPoints &x_n, const ControlPoints &displacement, const double dt)
-  {
-    return {x_n + (1. - sdirk2_gamma) / sdirk2_gamma * displacement, sdirk2_gamma * dt};
   }
 } // namespace tanktread

@@ -245,18 +245,27 @@ TEST(Motion, ARunThatEndsSteadyIsSteady)
 }
 
 
-TEST(StepHistory, PositionsBetweenLevelsAreThoseOfTheParabola)
+TEST(StepHistory, PositionsBetweenLevelsAreThoseOfThePolynomial)
 {
-  const auto  x = [](const double t) -> ShellFields { return {ControlPoints::Constant(2, 3, 1. + 2. * t - 3. * t * t), ControlPoints::Constant(2, 3, t * t)}; };
-  StepHistory history{TimeParameters()};
-  for (const double t : {-1., 0.1, 0.25, 0.3})
-    history.add(t, x(t));
-  for (const double t : {0.25, 0.27, 0.3})
-    for (const unsigned int c : {0, 1})
-      EXPECT_LT((history.at(t)[c] - x(t)[c]).norm(), 1e-13);
+  TimeParameters time;
+  for (const TimeScheme scheme : {TimeScheme::bdf2, TimeScheme::bdf3})
+    {
+      time.scheme       = scheme;
+      const double cube = scheme == TimeScheme::bdf3 ? 5. : 0.;
+      const auto   x    = [&](const double t) -> ShellFields {
+        return {ControlPoints::Constant(2, 3, 1. + 2. * t - 3. * t * t + cube * t * t * t), ControlPoints::Constant(2, 3, t * t)};
+      };
+      StepHistory history(time);
+      for (const double t : {-1., 0.1, 0.25, 0.3})
+        history.add(t, x(t));
+      for (const double t : {0.25, 0.27, 0.3})
+        for (const unsigned int c : {0, 1})
+          EXPECT_LT((history.at(t)[c] - x(t)[c]).norm(), 1e-13);
+    }
+  const auto  square = [](const double t) -> ShellFields { return {ControlPoints::Constant(2, 3, t * t)}; };
   StepHistory one{TimeParameters()};
-  one.add(0.5, x(0.5));
-  EXPECT_EQ(one.at(0.5), x(0.5));
-  one.add(0.7, x(0.7));
-  EXPECT_LT((one.at(0.6)[0] - 0.5 * (x(0.5)[0] + x(0.7)[0])).norm(), 1e-14);
+  one.add(0.5, square(0.5));
+  EXPECT_EQ(one.at(0.5), square(0.5));
+  one.add(0.7, square(0.7));
+  EXPECT_LT((one.at(0.6)[0] - 0.5 * (square(0.5)[0] + square(0.7)[0])).norm(), 1e-14);
 }

@@ -7,19 +7,26 @@
 #include <tanktread/shell/shell_configuration.h>
 #include <tanktread/simulation/time_stepping.h>
 
-#include <array>
 #include <deque>
+#include <vector>
 
 namespace tanktread
 {
-  /** One implicit step of all shells in the form x = xhat + tau dx/dt(x). */
+  /** A stage of a step, of all shells: x = xhat + tau dx/dt(x). */
   struct ShellSteps
   {
     ShellFields xhat;
     double      tau;
   };
 
-  /** The last positions of all shells, at most three, and the scheme on them. Needs nothing of the fluid, so it outlives changes of its mesh. */
+  /** What makes the explicit part of a stage for other fields than positions. */
+  struct StageWeights
+  {
+    std::vector<double> stages; // of the stages before, in their order
+    std::vector<double> levels; // of the levels, newest first
+  };
+
+  /** The last positions of all shells, at most four, and the scheme on them. Needs nothing of the fluid, so it outlives changes of its mesh. */
   class StepHistory
   {
   public:
@@ -31,37 +38,29 @@ namespace tanktread
     void
     add(double time, const ShellFields &x);
 
-    /** Whether the next step has no two levels to look back to though the scheme wants them: it is one of SDIRK2, first_stage() and then second_stage(). */
-    bool
-    starts() const
-    {
-      return parameters_.scheme == TimeScheme::bdf2 && levels_.size() == 1;
-    }
+    /** Solutions that the next step takes: one for a multistep scheme with enough levels behind it, otherwise those of SDIRK of the same order. */
+    unsigned int
+    n_stages() const;
 
-    /** The scheme for a step of `length` from the last level; not where it starts(). */
+    /** Part of the next step's length after which a stage ends; 1 for the last. */
+    double
+    stage_end(unsigned int i) const;
+
+    /** Stage i of a step of `length` from the last level; `displacements` are those by the velocities of the stages before, tau U. */
     ShellSteps
-    step(double length) const;
+    stage(unsigned int i, double length, const std::vector<ShellFields> &displacements) const;
 
-    /** The stages of a step of SDIRK2; `displacement` is that by the velocities of the first stage, tau U. */
-    ShellSteps
-    first_stage(double length) const;
-    ShellSteps
-    second_stage(double length, const ShellFields &displacement) const;
-
-    /** What weighs the last level and the one before in ShellSteps::xhat of step(), for other fields with the same scheme. */
-    std::array<double, 2>
-    weights(double length) const;
-
-    /** The same of second_stage(): what weighs the first stage and the last level. */
-    static std::array<double, 2>
-    second_stage_weights();
+    /** The same stage for other fields: their explicit part is a sum over stages and levels with these weights. */
+    StageWeights
+    stage_weights(unsigned int i, double length) const;
 
     /**
-     * Local error of a step to x (root mean square over the control points, in a), from the divided differences of the positions,
+     * Local error of a step to x (root mean square over the control points, in a), q the order: the term by which the exact motion misses the scheme, its
+     * derivative from the divided difference of the last q + 1 levels and x,
      *
-     *     backward Euler: 1/2 dt^2 x'',   BDF2: (1 + omega)^2 / (6 omega (1 + 2 omega)) dt^3 x''',
+     *     multistep: tau (t - t_n) ... (t - t_{n+1-q}) x^(q+1) / (q+1)!,   SDIRK: its constant for linear motion times dt^(q+1) x^(q+1).
      *
-     * the terms by which the exact motion misses the scheme. Zero while there are too few levels to tell, as at the start.
+     * Zero while there are too few levels to tell, as at the start.
      */
     double
     local_error(double length, const ShellFields &x) const;
@@ -74,24 +73,20 @@ namespace tanktread
     double
     first_length() const;
 
-    /**
-     * Positions at a time up to the last level: the parabola through the last three levels, the straight line through two, the only one. As accurate as the
-     * schemes where it lies between the last two.
-     */
+    /** Positions at a time up to the last level: the polynomial through the last three levels, four for schemes of third order, or as many as there are. */
     ShellFields
     at(double time) const;
 
   private:
-    bool
-    is_second_order() const
-    {
-      return parameters_.scheme == TimeScheme::bdf2;
-    }
-
-    /** That formula for each capsule, with its number. */
-    template <typename Formula>
-    ShellSteps
-    each_capsule(const Formula &formula) const;
+    /** SDIRK for the next step, or none: it is a multistep one. */
+    const SdirkScheme *
+    one_step_scheme() const;
+    /** For the next step of that length. */
+    MultistepFormula
+    multistep(double length) const;
+    /** Times of the last `n` levels, newest first, behind that of a new one. */
+    std::vector<double>
+    times(double length, std::size_t n) const;
 
     struct Level
     {

@@ -8,7 +8,7 @@
 #include <tanktread/simulation/run_memory.h>
 #include <tanktread/solver/scene.h>
 
-#include <array>
+#include <deque>
 #include <string>
 #include <utility>
 #include <vector>
@@ -70,15 +70,20 @@ namespace tanktread
   private:
     StepResult
     implicit_step(State &state, double time, bool mesh_is_new);
-    /** Solves for the level at `time`, from the guess `next`. With inertia the velocities of `last` and `before` go into it with these weights. */
-    NewtonReport
-    solve_level(const ShellSteps &steps, double time, const std::array<double, 2> &weights, const State &last, const State *before, State &next);
-    /** The two stages of a step that starts the scheme. A first stage beyond the finest cells is left in `next`. */
-    NewtonReport
-    starting_step(const State &state, double time, double length, State &next);
-    /** One attempt at a step: sets `next` to the new level, or says in the log why not. */
+    /** Levels with their times, newest first. */
+    using Levels = std::deque<std::pair<double, const State *>>;
+    /** One attempt at a step: sets `next` to the new level, or says in the log why not. With a stage beyond the finest cells, `next` is that stage. */
     NewtonReport
     try_step(const State &state, double time, double length, bool from_extrapolation, State &next);
+    /** Solves the stages of a step, from guesses made of the stages before and of `levels`. The last one solved, or not solved, is in `next`. */
+    NewtonReport
+    solve_stages(const State &state, double time, double length, Levels levels, State &next);
+    /** Explicit part of the velocity of a stage in a liquid with inertia; otherwise empty. */
+    FluidVector
+    uhat(const StageWeights &weights, const State &state, const std::deque<State> &stages) const;
+    /** What the velocities have moved in a stage: not what sets the volume right, which is done once for the whole step. */
+    ShellFields
+    displacement(const State &stage, const ShellFields &xhat) const;
     /** Attempts from the extrapolated state and from the last one. Returns why they failed, or nothing. */
     std::string
     attempts(const State &state, double time, bool first_attempt, StepResult &result, State &next);
@@ -89,12 +94,9 @@ namespace tanktread
     explicit_step(State &state, double time);
     void
     check_explicit_step(const ControlPoints &displacement, double length) const;
-    /** The polynomial in time through these levels, with the pressures of the present sides of vertices, at `time`. */
+    /** The polynomial in time through these levels, three at most, with the pressures of the present sides of vertices, at `time`. */
     State
-    extrapolation(const std::vector<std::pair<double, const State *>> &levels, double time) const;
-    /** From `state` at `now` and the levels before it, which there are. */
-    State
-    guess(const State &state, double now, double time) const;
+    extrapolation(const Levels &levels, double time) const;
 
     const TimeParameters parameters_;
     const TimeCoupling   coupling_;
