@@ -16,7 +16,7 @@ namespace tanktread
   /** Section "Time". Times in the scene's unit. */
   struct TimeParameters
   {
-    TimeScheme scheme           = TimeScheme::bdf2;
+    TimeScheme scheme           = TimeScheme::bdf3;
     double     step             = 0.1;
     double     tolerance        = 0.;
     double     steady_tolerance = 0.;

@@ -26,8 +26,8 @@ namespace tanktread
     TimeCoupling coupling              = TimeCoupling::implicit_newton;
     Interface    interface             = Interface::enriched;
     StokesMethod method                = StokesMethod::matrix_free;
-    double       newton_tolerance      = 1e-5;
-    double       volume_tolerance      = 1e-9;
+    double       newton_tolerance      = 1e-4;
+    double       volume_tolerance      = 1e-7;
     double       linear_tolerance      = 0.1;
     unsigned int max_newton_iterations = 12;
     unsigned int max_linear_iterations = 200;
