@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <limits>
 #include <sstream>
 
@@ -149,6 +150,19 @@ namespace tanktread
     }
 
 
+    /** "\n  In the limit D_xz 0.3802 +- 0.0002, ...", nothing without limits. */
+    std::string
+    limits_text(const MotionLimits &limits)
+    {
+      std::ostringstream text;
+      for (const auto &[name, limit] : limits.named())
+        if (!std::isnan(limit.value))
+          text << (text.str().empty() ? "\n  In the limit " : ", ") << name << ' ' << limit.value << " +- " << std::setprecision(2) << limit.error
+               << std::setprecision(6);
+      return text.str().empty() ? "" : text.str() + '.';
+    }
+
+
     MotionMode
     mode(const Samples &samples, const std::size_t first)
     {
@@ -166,7 +180,7 @@ namespace tanktread
   MotionSummary
   motion_summary(const std::vector<MotionSample> &samples, const bool ended_steady)
   {
-    MotionSummary s{MotionMode::undetermined, nan, nan, nan, nan, nan, nan, nan, nan, nan, nan, nan};
+    MotionSummary s;
     if (samples.empty())
       return s;
     const std::size_t first   = after_first_half_turn(samples);
@@ -187,6 +201,7 @@ namespace tanktread
     s.theta_maximum   = theta.high;
     s.D_last          = samples.back().D;
     s.theta_last      = samples.back().theta;
+    s.limits          = motion_limits(samples);
     return s;
   }
 
@@ -222,7 +237,7 @@ namespace tanktread
     text << ".\n  D_xz between " << s.D_minimum << " and " << s.D_maximum;
     if (!std::isnan(s.D_period))
       text << " with period " << s.D_period;
-    text << "; at the end " << s.D_last << '.';
+    text << "; at the end " << s.D_last << '.' << limits_text(s.limits);
     if (!std::isnan(s.tank_treading_frequency))
       text << "\n  Tank-treading: " << s.tank_treading_frequency << " turns per unit of time (period " << 1. / s.tank_treading_frequency << ").";
     if (!std::isnan(s.tumbling_frequency))

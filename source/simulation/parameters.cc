@@ -51,7 +51,7 @@ namespace tanktread
     check_study(const Parameters &parameters)
     {
       parameters.study.check(parameters.capsule.shape == Shape::file ? -1 : int(parameters.shell_mesh.level),
-                             parameters.time.steady_tolerance > 0.,
+                             parameters.time.steady_tolerance > 0. || parameters.time.limit_tolerance > 0.,
                              parameters.scene.boundary == Boundary::unbounded);
     }
 

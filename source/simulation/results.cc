@@ -94,18 +94,24 @@ namespace tanktread
     Row
     summary_row(const MotionSummary &s)
     {
-      return {{"from", s.from},
-              {"end", s.end},
-              {"tank_treading_frequency", s.tank_treading_frequency},
-              {"tumbling_frequency", s.tumbling_frequency},
-              {"D_period", s.D_period},
-              {"D_frequency", 1. / s.D_period},
-              {"D_minimum", s.D_minimum},
-              {"D_maximum", s.D_maximum},
-              {"D_last", s.D_last},
-              {"theta_minimum", s.theta_minimum},
-              {"theta_maximum", s.theta_maximum},
-              {"theta_last", s.theta_last}};
+      Row result = {{"from", s.from},
+                    {"end", s.end},
+                    {"tank_treading_frequency", s.tank_treading_frequency},
+                    {"tumbling_frequency", s.tumbling_frequency},
+                    {"D_period", s.D_period},
+                    {"D_frequency", 1. / s.D_period},
+                    {"D_minimum", s.D_minimum},
+                    {"D_maximum", s.D_maximum},
+                    {"D_last", s.D_last},
+                    {"theta_minimum", s.theta_minimum},
+                    {"theta_maximum", s.theta_maximum},
+                    {"theta_last", s.theta_last}};
+      for (const auto &[quantity, limit] : s.limits.named())
+        {
+          result.emplace_back(quantity + "_limit", limit.value);
+          result.emplace_back(quantity + "_limit_error", limit.error);
+        }
+      return result;
     }
   } // namespace
 

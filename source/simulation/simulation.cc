@@ -154,7 +154,7 @@ namespace tanktread
          << scene_.fluid().space().velocity->partitioner()->size() << " velocity and " << scene_.fluid().space().pressure->partitioner()->size()
          << " pressure unknowns.";
     log_.line(text.str());
-    record(first, false);
+    record(first, observe_capsules(), false);
   }
 
 
@@ -168,6 +168,21 @@ namespace tanktread
     // Three steps in a row: at an extremum of the shape one alone may be quiet.
     memory_.n_quiet_steps = fastest < parameters_.time.steady_tolerance ? memory_.n_quiet_steps + 1 : 0;
     return memory_.n_quiet_steps == 3;
+  }
+
+
+  bool
+  Simulation::limits_are_known()
+  {
+    if (parameters_.time.limit_tolerance == 0.)
+      return false;
+    double error = 0.;
+    for (const CapsuleMemory &capsule : memory_.capsules)
+      error = std::max(error, motion_limits(capsule.motion).largest_error());
+    error = dealii::Utilities::MPI::broadcast(communicator_, error, 0);
+    // Three steps in a row: one bar alone may be small by chance.
+    memory_.n_known_steps = error < parameters_.time.limit_tolerance ? memory_.n_known_steps + 1 : 0;
+    return memory_.n_known_steps == 3;
   }
 
 
@@ -199,7 +214,17 @@ namespace tanktread
         o.alpha            = memory.phase.alpha();
         o.delta            = memory.phase.delta();
         o.theta_continuous = memory.phase.theta();
-        memory.motion.push_back({memory_.time, o.ellipsoid.taylor_parameter, o.theta_continuous, o.alpha, o.delta});
+        memory.motion.push_back({memory_.time,
+                                 o.ellipsoid.taylor_parameter,
+                                 o.theta_continuous,
+                                 o.alpha,
+                                 o.delta,
+                                 o.ellipsoid.L,
+                                 o.ellipsoid.B,
+                                 o.ellipsoid.W,
+                                 o.rheology.intrinsic_viscosity,
+                                 o.rheology.normal_difference_1,
+                                 o.rheology.normal_difference_2});
       }
   }
 
@@ -224,14 +249,24 @@ namespace tanktread
   }
 
 
-  void
-  Simulation::record(const StepResult &step, const bool last)
+  Simulation::Observed
+  Simulation::observe_capsules()
   {
-    const Timings::Scope            scope(scene_.timings(), "Output");
-    const ShellFields               velocities = scene_.level().shell_velocity(state_);
-    std::vector<CapsuleObservables> capsules   = observe(scene_, state_, velocities);
-    remember(capsules);
-    StepObservables o;
+    const Timings::Scope scope(scene_.timings(), "Output");
+    Observed             result;
+    result.velocities = scene_.level().shell_velocity(state_);
+    result.capsules   = observe(scene_, state_, result.velocities);
+    remember(result.capsules);
+    return result;
+  }
+
+
+  void
+  Simulation::record(const StepResult &step, const Observed &observed, const bool last)
+  {
+    const Timings::Scope                   scope(scene_.timings(), "Output");
+    const std::vector<CapsuleObservables> &capsules = observed.capsules;
+    StepObservables                        o;
     o.time              = memory_.time;
     o.step              = step.length;
     o.dissipation       = scene_.level().dissipation(state_);
@@ -245,7 +280,7 @@ namespace tanktread
     const bool   fields   = memory_.n_steps == 0 || last || (interval > 0. && is_due(memory_.next_fields, interval));
     add_contours(step.length, fields);
     if (fields)
-      results_->add_fields(memory_.time, scene_, state_, velocities);
+      results_->add_fields(memory_.time, scene_, state_, observed.velocities);
     log_step(o, capsules);
   }
 
@@ -291,22 +326,26 @@ namespace tanktread
   Simulation::advance()
   {
     start();
-    bool steady = false;
+    bool steady = false, known = false;
     for (bool last = parameters_.scene.end_time <= 0.; !last;)
       {
         StepResult result = step();
         result.linear_iterations += std::exchange(memory_.remeshing_iterations, 0);
         memory_.time += result.length;
         ++memory_.n_steps;
-        steady = is_steady(result.length);
-        last   = steady || memory_.time >= parameters_.scene.end_time - rounding();
-        record(result, last);
+        steady                  = is_steady(result.length);
+        const Observed observed = observe_capsules();
+        known                   = limits_are_known();
+        last                    = steady || known || memory_.time >= parameters_.scene.end_time - rounding();
+        record(result, observed, last);
         if (steady)
           log_.line("Steady: axes and inclination have changed slower than Time/Steady tolerance in three steps.");
+        if (known)
+          log_.line("Steady: what the shape relaxes to has been known to Time/Limit tolerance in three steps.");
         if (!last && !scene_.covers(state_))
           memory_.remeshing_iterations = refine_around_shells();
       }
-    return steady ? "steady" : "done";
+    return steady || known ? "steady" : "done";
   }
 
 

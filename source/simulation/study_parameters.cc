@@ -34,8 +34,8 @@ namespace tanktread
       "Vary",
       vary,
       "Causes of errors to be told apart by coarser companions of the run: mesh (cells and control mesh, spacings doubled), cells, control mesh, "
-      "step (Time/Step doubled, or Time/Tolerance eightfold), box (half the side, in unbounded liquid twice), stop (Time/Steady tolerance fourfold), tolerances (Newton "
-      "tolerance tenfold). Empty: the run alone.",
+      "step (Time/Step doubled, or Time/Tolerance eightfold), box (half the side, in unbounded liquid twice), stop (no companion: from the limit "
+      "that the run's history is extrapolated to), tolerances (Newton tolerance tenfold). Empty: the run alone.",
       dealii::Patterns::List(dealii::Patterns::Selection(selection)));
     prm.add_parameter("Levels",
                       levels,
@@ -70,7 +70,7 @@ namespace tanktread
     if (names(Cause::mesh) > 0 && names(Cause::cells) + names(Cause::control_mesh) > 0)
       throw InputError("Study/Vary names mesh beside cells or control mesh; mesh is both of them");
     if (names(Cause::stop) > 0 && !has_stop)
-      throw InputError("Study/Vary names stop; allowed with Time/Steady tolerance > 0");
+      throw InputError("Study/Vary names stop; allowed with Time/Steady tolerance > 0 or Time/Limit tolerance > 0");
     if (is_unbounded && together && names(Cause::box) > 0)
       throw InputError("Study/Vary names box; allowed with Study/Together and Scene/Boundary = unbounded: what is coarser in companions, the box is larger");
     // The frugal companions of other causes have a mesh that is coarser once, which is no coarser than the last companion of the mesh.

@@ -13,7 +13,7 @@ namespace tanktread
 {
   namespace
   {
-    constexpr double stop_ratio = 4., tolerance_ratio = 10.;
+    constexpr double tolerance_ratio = 10.;
 
     std::string
     number(const double value)
@@ -91,7 +91,7 @@ namespace tanktread
   {
     if (causes.size() > 1)
       return 2.;
-    return causes[0] == Cause::stop ? stop_ratio : causes[0] == Cause::tolerances ? tolerance_ratio : 2.;
+    return causes[0] == Cause::tolerances ? tolerance_ratio : 2.;
   }
 
 
@@ -116,9 +116,10 @@ namespace tanktread
           case Cause::box: // (a/l)^3 between faces; in unbounded liquid what is left of the far field falls faster, as seen
             lowest = std::min(lowest, parameters.scene.boundary == Boundary::unbounded ? 5. : 3.);
             break;
-          case Cause::stop: // a shape that relaxes has as far to go as it is slow
           case Cause::tolerances:
             lowest = std::min(lowest, 1.);
+            break;
+          case Cause::stop: // the run tells
             break;
         }
     return lowest;
@@ -128,10 +129,17 @@ namespace tanktread
   StudyPlan
   study_plan(const StudyParameters &study, const bool larger_box)
   {
-    const std::vector<Cause> causes = study.causes();
-    StudyPlan                plan;
+    std::vector<Cause> causes   = study.causes();
+    const auto         stop     = std::remove(causes.begin(), causes.end(), Cause::stop);
+    const bool         has_stop = stop != causes.end();
+    causes.erase(stop, causes.end());
+    StudyPlan plan;
     plan.runs.push_back({});
     const std::map<Cause, unsigned int> run, coarser_mesh = {{Cause::mesh, 1}};
+    if (has_stop)
+      plan.series.push_back({{Cause::stop}, {0}, false});
+    if (causes.empty())
+      return plan;
     if (study.together)
       plan.series.push_back(make_series(causes, study.levels, run, plan.runs));
     else
@@ -165,8 +173,6 @@ namespace tanktread
                                                           : "Time/Step=" + number(parameters.time.step * power(2., n)));
         if (cause == Cause::box)
           result.push_back("Scene/Box side=" + box_sides(parameters.scene.box_side, power(parameters.scene.boundary == Boundary::unbounded ? 0.5 : 2., n)));
-        if (cause == Cause::stop)
-          result.push_back("Time/Steady tolerance=" + number(parameters.time.steady_tolerance * power(stop_ratio, n)));
         if (cause == Cause::tolerances)
           result.push_back("Solver/Newton tolerance=" + number(parameters.solver.newton_tolerance * power(tolerance_ratio, n)));
       }

@@ -24,12 +24,48 @@ namespace tanktread
       return text;
     }
 
+    /** `summary`'s number of this name. */
+    std::optional<double>
+    number(const std::map<std::string, double> &summary, const std::string &name)
+    {
+      const auto found = summary.find(name);
+      return found == summary.end() ? std::nullopt : std::optional<double>(found->second);
+    }
+
+    /** The name with one of its parts, which it has, replaced. */
+    std::string
+    with(std::string name, const std::string &part, const std::string &other)
+    {
+      return name.replace(name.find(part), part.size(), other);
+    }
+
+    bool
+    contains(const std::string &name, const std::string &part)
+    {
+      return name.find(part) != std::string::npos;
+    }
+
+    /** What the end of the run is worth, from its own history: the bar of a limit, for a last value also the distance from the limit; nothing for other numbers. */
+    std::optional<ErrorEstimate>
+    estimate_of_the_stop(const std::string &quantity, const std::map<std::string, double> &summary)
+    {
+      if (!contains(quantity, "_last") && !contains(quantity, "_limit"))
+        return std::nullopt;
+      const std::string           name  = contains(quantity, "_last") ? with(quantity, "_last", "_limit") : quantity;
+      const std::optional<double> limit = number(summary, name), error = number(summary, with(name, "_limit", "_limit_error"));
+      if (!limit || !error)
+        return std::nullopt;
+      return ErrorEstimate{std::nan(""), false, *limit, std::abs(summary.at(quantity) - *limit) + *error};
+    }
+
     std::optional<ErrorEstimate>
     estimate(const StudySeries                                               &series,
              const std::string                                               &quantity,
              const std::vector<std::optional<std::map<std::string, double>>> &summaries,
              const double                                                     order)
     {
+      if (series.causes[0] == Cause::stop)
+        return estimate_of_the_stop(quantity, *summaries[0]);
       std::vector<double> values;
       for (const std::size_t run : series.runs)
         {
@@ -146,6 +182,8 @@ namespace tanktread
       table.causes.push_back(series.name());
     for (const auto &[quantity, value] : *summaries[0])
       {
+        if (contains(quantity, "_limit_error"))
+          continue;
         StudyRow row{quantity, value, {}};
         for (const StudySeries &series : plan.series)
           row.estimates.push_back(estimate(series, quantity, summaries, series.expected_order(parameters)));

@@ -35,6 +35,12 @@ namespace tanktread
                       steady_tolerance,
                       "The run ends when semi-axes (in a) and inclination (in radians) change slower than this per unit of time; 0: at the end time only.",
                       Double(0., 1.));
+    prm.add_parameter(
+      "Limit tolerance",
+      limit_tolerance,
+      "The run ends when the shape that it relaxes to is known, by extrapolation, to this: error bars of D, L, B and W relative, of theta / pi absolute; "
+      "0: not for this.",
+      Double(0., 1.));
     prm.leave_subsection();
   }
 } // namespace tanktread

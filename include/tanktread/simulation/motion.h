@@ -4,20 +4,51 @@
 #ifndef tanktread_simulation_motion_h
 #define tanktread_simulation_motion_h
 
+#include <tanktread/simulation/relaxation_limit.h>
+
+#include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tanktread
 {
-  /** Shape and angles at one time. Angles in units of pi and continuous over many turns; not a number where they are not defined. */
+  /**
+   * Shape, angles and rheology at one time. Angles in units of pi and continuous over many turns; not a number where they are not defined, as the rheology is outside
+   * simple shear.
+   */
   struct MotionSample
   {
+    static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
     double time;
-    double D;     // Taylor parameter
-    double theta; // inclination of the long axis
-    double alpha; // of a marker on the shell
-    double delta; // alpha - theta, from its start
+    double D;                                     // Taylor parameter
+    double theta;                                 // inclination of the long axis
+    double alpha;                                 // of a marker on the shell
+    double delta;                                 // alpha - theta, from its start
+    double L = unknown, B = unknown, W = unknown; // semi-axes
+    double intrinsic_viscosity = unknown, N1 = unknown, N2 = unknown;
   };
+
+  /** Where a capsule relaxes to; see relaxation_limits(). */
+  struct MotionLimits
+  {
+    RelaxationLimit D, theta, L, B, W, intrinsic_viscosity, N1, N2;
+
+    /** Names as in summary.csv. */
+    std::vector<std::pair<std::string, RelaxationLimit>>
+    named() const;
+
+    /**
+     * The largest bar of the shape, which is what Time/Limit tolerance is compared with: of D, L, B and W relative to their limits (of D below 0.01 to that), of theta / pi
+     * absolute where it has a limit. Infinite without limits.
+     */
+    double
+    largest_error() const;
+  };
+
+  MotionLimits
+  motion_limits(const std::vector<MotionSample> &samples);
 
   enum class MotionMode
   {
@@ -35,14 +66,15 @@ namespace tanktread
    */
   struct MotionSummary
   {
-    MotionMode mode = MotionMode::undetermined;
-    double     from, end;                    // times between which the motion was judged
-    double     tank_treading_frequency;      // of the material against the shape, from delta
-    double     tumbling_frequency;           // of the shape, from theta
-    double     D_period;                     // mean time between the maxima of D
-    double     D_minimum, D_maximum;         // of its last oscillation; of the last fifth of the run when it has none
-    double     theta_minimum, theta_maximum; // between `from` and `end`
-    double     D_last, theta_last;
+    MotionMode   mode = MotionMode::undetermined;
+    double       from = MotionSample::unknown, end = MotionSample::unknown;            // times between which the motion was judged
+    double       tank_treading_frequency = MotionSample::unknown;                      // of the material against the shape, from delta
+    double       tumbling_frequency      = MotionSample::unknown;                      // of the shape, from theta
+    double       D_period                = MotionSample::unknown;                      // mean time between the maxima of D
+    double       D_minimum = MotionSample::unknown, D_maximum = MotionSample::unknown; // of its last oscillation; of the last fifth of the run when it has none
+    double       theta_minimum = MotionSample::unknown, theta_maximum = MotionSample::unknown; // between `from` and `end`
+    double       D_last = MotionSample::unknown, theta_last = MotionSample::unknown;
+    MotionLimits limits;
   };
 
   /**

@@ -57,8 +57,20 @@ namespace tanktread
     /** Whether something that happens at multiples of `interval` (0: always) is due; moves `next` to the next time. */
     bool
     is_due(double &next, double interval) const;
+    /** Whether the limits that all shapes relax to have been known to the tolerance in three steps, the last one observed; the same on all ranks. */
+    bool
+    limits_are_known();
+
+    struct Observed
+    {
+      ShellFields                     velocities;
+      std::vector<CapsuleObservables> capsules;
+    };
+    /** Observes the present state and remembers it. */
+    Observed
+    observe_capsules();
     void
-    record(const StepResult &step, bool last);
+    record(const StepResult &step, const Observed &observed, bool last);
     /** Phase angles and samples of the motion. */
     void
     remember(std::vector<CapsuleObservables> &capsules);

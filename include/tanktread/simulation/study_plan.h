@@ -24,7 +24,7 @@ namespace tanktread
     name() const;
   };
 
-  /** Runs, by their numbers, that differ by the causes alone: the one whose error is wanted first, each of the others once more coarser (or finer). */
+  /** Runs, by their numbers, that differ by the causes alone: the one whose error is wanted first, each of the others once more coarser (or finer). For the stop the run itself alone. */
   struct StudySeries
   {
     std::vector<Cause>       causes; // more than one: varied together

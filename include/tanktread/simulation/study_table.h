@@ -45,7 +45,10 @@ namespace tanktread
     as_text() const;
   };
 
-  /** @param summaries of each run of the plan, nothing where it has failed; the first one is there. @param parameters of the run itself. */
+  /**
+   * Rows for all numbers of the run's summary; where it relaxes, the limits (D_limit, ...) are what a stop moves least. @param summaries of each run of the plan, nothing where it has failed; the first one is there.
+   * @param parameters of the run itself.
+   */
   StudyTable
   study_table(const StudyPlan &plan, const std::vector<std::optional<std::map<std::string, double>>> &summaries, const Parameters &parameters);
 } // namespace tanktread

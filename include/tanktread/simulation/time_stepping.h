@@ -20,6 +20,7 @@ namespace tanktread
     double     step             = 0.1;
     double     tolerance        = 0.;
     double     steady_tolerance = 0.;
+    double     limit_tolerance  = 0.;
 
     /** Declares section "Time" in `prm`; parsing fills this object, which has to outlive `prm`. */
     void
