@@ -161,6 +161,36 @@ TEST(StudyTable, AddsTheBarsAndSaysWhatIsMissing)
   EXPECT_NE(table.as_csv().find("D,cells,1,0.03,2,0,0.99"), std::string::npos) << table.as_csv();
 }
 
+TEST(StudyPlan, MakesNoCompanionForTheStop)
+{
+  EXPECT_EQ(names(study_plan(study_of({"stop"}), false)), (std::vector<std::string>{""}));
+  StudyParameters study = study_of({"stop", "mesh", "step"}, 3);
+  EXPECT_EQ(names(study_plan(study, false)), (std::vector<std::string>{"", "mesh-1", "mesh-2", "mesh-1_step-1", "mesh-1_step-2"}));
+  study.together       = true;
+  const StudyPlan plan = study_plan(study, false);
+  EXPECT_EQ(names(plan), (std::vector<std::string>{"", "mesh-1_step-1", "mesh-2_step-2"}));
+  ASSERT_EQ(plan.series.size(), 2u);
+  EXPECT_EQ(plan.series[0].name(), "stop");
+  EXPECT_EQ(plan.series[1].name(), "mesh, step");
+}
+
+TEST(StudyTable, TakesTheStopFromTheLimitsOfTheRun)
+{
+  const StudyPlan                     plan    = study_plan(study_of({"stop"}), false);
+  const std::map<std::string, double> summary = {{"D_last_2", 0.381}, {"D_limit_2", 0.38}, {"D_limit_error_2", 2e-4}, {"D_period", 3.}, {"theta_last_2", 0.14}};
+  const StudyTable                    table   = study_table(plan, {summary}, Parameters());
+  std::map<std::string, StudyRow>     rows;
+  for (const StudyRow &row : table.rows)
+    rows.emplace(row.quantity, row);
+  EXPECT_EQ(rows.size(), 4u);
+  EXPECT_EQ(rows.count("D_limit_error_2"), 0u);
+  EXPECT_NEAR(rows.at("D_limit_2").error(), 2e-4, 1e-15);
+  EXPECT_NEAR(rows.at("D_last_2").error(), 1.2e-3, 1e-15);
+  EXPECT_NEAR(rows.at("D_last_2").estimates[0]->extrapolated, 0.38, 1e-15);
+  EXPECT_FALSE(rows.at("D_period").is_complete());
+  EXPECT_FALSE(rows.at("theta_last_2").is_complete()); // the run has no limit of it
+}
+
 TEST(StudyTable, ReadsOnlySummariesOfRunsThatEndedWell)
 {
   const std::string folder = testing::TempDir() + "/summaries";
