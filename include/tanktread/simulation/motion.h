@@ -4,11 +4,10 @@
 #ifndef tanktread_simulation_motion_h
 #define tanktread_simulation_motion_h
 
-#include <tanktread/simulation/relaxation_limit.h>
+#include <tanktread/simulation/motion_limits.h>
 
 #include <limits>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace tanktread
@@ -29,26 +28,6 @@ namespace tanktread
     double L = unknown, B = unknown, W = unknown; // semi-axes
     double intrinsic_viscosity = unknown, N1 = unknown, N2 = unknown;
   };
-
-  /** Where a capsule relaxes to; see relaxation_limits(). */
-  struct MotionLimits
-  {
-    RelaxationLimit D, theta, L, B, W, intrinsic_viscosity, N1, N2;
-
-    /** Names as in summary.csv. */
-    std::vector<std::pair<std::string, RelaxationLimit>>
-    named() const;
-
-    /**
-     * The largest bar of the shape, which is what Time/Limit tolerance is compared with: of D, L, B and W relative to their limits (of D below 0.01 to that), of theta / pi
-     * absolute where it has a limit. Infinite without limits.
-     */
-    double
-    largest_error() const;
-  };
-
-  MotionLimits
-  motion_limits(const std::vector<MotionSample> &samples);
 
   enum class MotionMode
   {

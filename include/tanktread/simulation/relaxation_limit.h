@@ -33,7 +33,7 @@ namespace tanktread
   reduced_rank_extrapolation(const Eigen::MatrixXd &samples, Eigen::Index n_leading, unsigned int rank, unsigned int stride);
 
   /**
-   * Limits of the columns of `values`, one row a time, by the rule of doc/theory.md, section 8.3. The leading columns, all of one size (a length in units of a, an
+   * Limits of the columns of `values`, one row a time, by the rule of doc/theory.md, section 8.5. The leading columns, all of one size (a length in units of a, an
    * angle in units of pi), decide about the weights of time, and whether the motion relaxes: if it swings, turns, grows or has hardly begun, nothing is a number.
    * A column that is not finite at all times that count has no limit, and no part in the weights.
    *
