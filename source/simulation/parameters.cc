@@ -90,6 +90,7 @@ namespace tanktread
   void
   Parameters::add_parameters(dealii::ParameterHandler &prm)
   {
+    accuracy.add_parameters(prm);
     scene.add_parameters(prm);
     capsule.add_parameters(prm);
     placement.add_parameters(prm);
@@ -147,6 +148,11 @@ namespace tanktread
     parameters.file              = file;
     complete_file_names(prm, parameters);
     parameters.check(source);
+    parameters.choices = accuracy_choices(parameters, source);
+    for (const Choice &choice : parameters.choices)
+      set(prm, choice.section, choice.name, choice.value);
+    if (!parameters.choices.empty())
+      parameters.check(source);
     parameters.used = parameters_as_prm(prm);
     return parameters;
   }

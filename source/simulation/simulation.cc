@@ -133,6 +133,8 @@ namespace tanktread
       replace_file(folder + "/used_parameters.prm", parameters_.used);
     });
     log_.header(description(parameters_, dealii::Utilities::MPI::n_mpi_processes(communicator_)));
+    if (parameters_.accuracy.target_error > 0.)
+      log_.line(accuracy_text(parameters_));
     if (!moved_to.empty())
       log_.line("The folder held a former run, now in " + moved_to + ".");
     results_ = std::make_unique<Results>(folder, state_.capsules.size(), communicator_);

@@ -64,6 +64,8 @@ namespace tanktread
     for (const StudyRun &run : plan_.runs)
       {
         std::vector<std::string> of_run = overrides;
+        for (const Choice &choice : parameters.choices) // companions differ from the run in their cause alone
+          of_run.push_back(choice.section + "/" + choice.name + "=" + choice.value);
         if (!run.coarser.empty())
           for (const std::string &change : changes(parameters, run))
             of_run.push_back(change);

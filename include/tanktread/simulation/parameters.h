@@ -6,6 +6,7 @@
 
 #include <tanktread/fluid/fluid_mesh_parameters.h>
 #include <tanktread/shell/shell_parameters.h>
+#include <tanktread/simulation/accuracy.h>
 #include <tanktread/simulation/output_parameters.h>
 #include <tanktread/simulation/placement_parameters.h>
 #include <tanktread/simulation/scene_parameters.h>
@@ -35,6 +36,7 @@ namespace tanktread
   /** Everything that a parameter file can say. Members start with the defaults. */
   struct Parameters
   {
+    AccuracyParameters     accuracy;
     SceneParameters        scene;
     CapsuleShapeParameters capsule;
     PlacementParameters    placement;
@@ -45,6 +47,8 @@ namespace tanktread
     SolverParameters       solver;
     OutputParameters       output;
     StudyParameters        study;
+
+    std::vector<Choice> choices; // made for Accuracy/Target error, and set
 
     std::string file; // name of the parameter file
     std::string used; // all parameters with the values used, as a parameter file that can be read again

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: section "Accuracy", which chooses the numerical parameters for a wanted error.
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <tanktread/base/parameter_file.h>
+#include <tanktread/simulation/accuracy.h>
+#include <tanktread/simulation/parameters.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+namespace tanktread
+{
+  namespace
+  {
+    // Parts of the target that each cause may have.
+    constexpr double of_cells = 0.45, of_steps = 0.25, of_newton = 0.1, of_stop = 0.25, of_control_mesh = 0.5;
+
+    // The model: doc/accuracy.md, "The dial". Errors are relative to the largest D; h in a.
+    constexpr double cells_factor = 0.045, cells_order = 3.;                   // one viscosity
+    constexpr double contrast_factor = 0.065, contrast_order = 2.;             // two
+    constexpr double control_mesh_at_level_1 = 0.012, control_mesh_gain = 16.; // a level
+    constexpr double steps_factor  = 1.2;                                      // error of D over Time/Tolerance
+    constexpr double newton_factor = 0.1;                                      // over Solver/Newton tolerance
+    constexpr double faces_factor  = 8.;                                       // over (a/l)^3
+
+
+    std::string
+    number(const double value)
+    {
+      std::ostringstream text;
+      text.precision(6);
+      text << value;
+      return text.str();
+    }
+
+
+    bool
+    has_contrast(const Parameters &parameters)
+    {
+      return parameters.scene.viscosity_ratio != 1.;
+    }
+
+
+    double
+    cells_error(const Parameters &parameters, const double h)
+    {
+      const double uniform = cells_factor * std::pow(h, cells_order);
+      return has_contrast(parameters) ? std::max(uniform, contrast_factor * std::pow(h, contrast_order)) : uniform;
+    }
+
+
+    double
+    control_mesh_error(const int level)
+    {
+      return control_mesh_at_level_1 * std::pow(control_mesh_gain, 1 - level);
+    }
+
+
+    /** Side of the finest cells that have their part of the target, to three digits. */
+    double
+    wanted_cell(const Parameters &parameters)
+    {
+      const double error = of_cells * parameters.accuracy.target_error;
+      double       h     = std::pow(error / cells_factor, 1. / cells_order);
+      if (has_contrast(parameters))
+        h = std::min(h, std::pow(error / contrast_factor, 1. / contrast_order));
+      const double unit = std::pow(10., std::floor(std::log10(h)) - 2.);
+      return unit * std::floor(h / unit);
+    }
+
+
+    /** Largest distance of the initial shape's points from its centre, in a. */
+    double
+    initial_radius(const Parameters &parameters)
+    {
+      const FittedShape shape = make_capsule(parameters.capsule, 2);
+      return std::sqrt(shape.control_points.rowwise().squaredNorm().maxCoeff());
+    }
+
+
+    /** Side of a box around one capsule in unbounded liquid: three coarsest cells, which are a power of two times h. */
+    double
+    side_of_box(const Parameters &parameters, const double h)
+    {
+      const double target  = parameters.accuracy.target_error;
+      const double radii   = target >= 0.005 ? 5.5 : target >= 0.0005 ? 6.5 : 7.5;
+      const double D       = expected_deformation(parameters);
+      const double stretch = std::sqrt((1. + D) / (1. - std::min(D, 0.7)));
+      double       side    = 3. * h;
+      while (side < radii * std::max({1., 0.8 * initial_radius(parameters), 0.7 * stretch}))
+        side *= 2.;
+      return side;
+    }
+
+
+    bool
+    may_be_unbounded(const Parameters &parameters, const ParameterSource &source)
+    {
+      for (const char *const name : {"Boundary", "Box side", "Box faces", "Channel half width"})
+        if (source.is_set(std::string("Scene/") + name))
+          return false;
+      return parameters.scene.reynolds_number == 0. && parameters.scene.flow != Flow::plane_poiseuille && parameters.placement.centres.size() == 1;
+    }
+  } // namespace
+
+
+  void
+  AccuracyParameters::add_parameters(dealii::ParameterHandler &prm)
+  {
+    prm.enter_subsection("Accuracy");
+    prm.add_parameter(
+      "Target error",
+      target_error,
+      "Wanted error of D, relative to its largest value, and of theta/pi: parameters of mesh, box, time and solver that are not set are chosen for it. The log "
+      "says which, and what each is expected to add to the error. 0: defaults.",
+      dealii::Patterns::Double(0., 0.1));
+    prm.leave_subsection();
+  }
+
+
+  double
+  expected_deformation(const Parameters &parameters)
+  {
+    const FittedShape     shape   = make_capsule(parameters.capsule, 2);
+    const Eigen::Vector3d extent  = (shape.control_points.colwise().maxCoeff() - shape.control_points.colwise().minCoeff()).transpose();
+    const double          initial = (extent.maxCoeff() - extent.minCoeff()) / (extent.maxCoeff() + extent.minCoeff());
+    if (parameters.scene.flow == Flow::quiescent)
+      return std::max(initial, 0.02);
+    // Neo-Hookean sphere, flat reference, Ca = 3 G: D = (25/12) Ca / (1 + 33 khat).
+    const double G = 1. / parameters.scene.surface_young_modulus(), khat = parameters.scene.bending_modulus() * G, small = 6.25 * G / (1. + 33. * khat);
+    return std::max({initial, small / (1. + small), 0.005});
+  }
+
+
+  std::vector<Choice>
+  accuracy_choices(const Parameters &parameters, const ParameterSource &source)
+  {
+    const double        target = parameters.accuracy.target_error;
+    std::vector<Choice> result;
+    if (target == 0.)
+      return result;
+    const auto choose = [&](const std::string &section, const std::string &name, const std::string &value) {
+      if (!source.is_set(section + "/" + name))
+        result.push_back({section, name, value});
+    };
+
+    const double h = wanted_cell(parameters);
+    if (may_be_unbounded(parameters, source) && !source.is_set("Fluid mesh/Coarsest cell") && !source.is_set("Fluid mesh/Finest cell"))
+      {
+        const double side = side_of_box(parameters, h);
+        choose("Scene", "Boundary", "unbounded");
+        choose("Scene", "Box side", number(side));
+        choose("Fluid mesh", "Coarsest cell", number(side / 3.));
+      }
+    choose("Fluid mesh", "Finest cell", number(1.0001 * h));
+    if (parameters.capsule.shape != Shape::file)
+      {
+        int level = 1;
+        while (control_mesh_error(level) > of_control_mesh * target && level < 5)
+          ++level;
+        choose("Shell mesh", "Level", std::to_string(level));
+      }
+
+    const double D = expected_deformation(parameters);
+    if (!source.is_set("Time/Step"))
+      {
+        choose("Time", "Step", "1");
+        choose("Time", "Tolerance", number(of_steps * target * D / steps_factor));
+      }
+    if (!source.is_set("Time/Steady tolerance"))
+      choose("Time", "Limit tolerance", number(of_stop * target));
+    const double newton = std::clamp(of_newton * target * D / newton_factor, 1e-7, 1e-2);
+    choose("Solver", "Newton tolerance", number(newton));
+    choose("Solver", "Volume tolerance", number(std::min(1e-3, 0.01 * newton)));
+    return result;
+  }
+
+
+  std::vector<ErrorShare>
+  expected_errors(const Parameters &parameters)
+  {
+    const double            D = expected_deformation(parameters), h = parameters.fluid_mesh.finest_cell;
+    std::vector<ErrorShare> result;
+    if (parameters.solver.interface == Interface::enriched)
+      {
+        const double order = cells_error(parameters, h) > cells_factor * std::pow(h, cells_order) ? contrast_order : cells_order;
+        result.push_back({"cells", cells_error(parameters, h), std::pow(2., 2.3 / order)});
+      }
+    if (parameters.capsule.shape != Shape::file)
+      result.push_back({"control mesh", control_mesh_error(parameters.shell_mesh.level), 1.2});
+    if (parameters.time.tolerance > 0. && parameters.time.scheme == TimeScheme::bdf3)
+      result.push_back({"steps", steps_factor * parameters.time.tolerance / D, std::pow(2., 1. / 3.)});
+    result.push_back({"Newton tolerance", newton_factor * parameters.solver.newton_tolerance / D, 1.05});
+    if (parameters.scene.boundary == Boundary::faces)
+      {
+        const double side = *std::min_element(parameters.scene.box_side.begin(), parameters.scene.box_side.end());
+        result.push_back({"box (against unbounded liquid)", faces_factor / std::pow(side, 3.), 1.2});
+      }
+    if (parameters.time.limit_tolerance > 0.)
+      result.push_back({"stop", parameters.time.limit_tolerance, 1.05});
+    return result;
+  }
+
+
+  std::string
+  accuracy_text(const Parameters &parameters)
+  {
+    std::ostringstream text;
+    text << std::setprecision(2) << "Chosen for Accuracy/Target error = " << parameters.accuracy.target_error << ":\n";
+    for (const Choice &choice : parameters.choices)
+      text << "  " << choice.section << '/' << choice.name << " = " << choice.value << '\n';
+    if (parameters.choices.empty())
+      text << "  nothing, all is set\n";
+    text << "Expected errors of D, relative to its largest value, about " << expected_deformation(parameters) << ":\n";
+    double sum = 0.;
+    for (const ErrorShare &share : expected_errors(parameters))
+      {
+        sum += share.error;
+        text << "  " << std::left << std::setw(32) << share.cause << std::setw(9) << share.error << "half of it: " << share.cost_of_half << " times the time\n";
+      }
+    text << "  " << std::setw(32) << "sum, if none cancels another" << sum << '\n';
+    return text.str();
+  }
+} // namespace tanktread
