@@ -152,8 +152,10 @@ TEST(StudyPlan, TakesLargerBoxesInUnboundedLiquid)
 
 TEST(StudyTable, AddsTheBarsAndSaysWhatIsMissing)
 {
-  const StudyPlan  plan  = study_plan(study_of({"cells", "step"}), false);
-  const StudyTable table = study_table(plan, {{{{"D", 1.}, {"w", 2.}}}, {{{"D", 1.03}}}, {{{"D", 0.7}, {"w", 2.}}}}, Parameters());
+  const StudyPlan plan = study_plan(study_of({"cells", "step"}), false);
+  Parameters      parameters;
+  parameters.time.scheme = TimeScheme::bdf2;
+  const StudyTable table = study_table(plan, {{{{"D", 1.}, {"w", 2.}}}, {{{"D", 1.03}}}, {{{"D", 0.7}, {"w", 2.}}}}, parameters);
   ASSERT_EQ(table.rows.size(), 2u);
   EXPECT_NEAR(table.rows[0].error(), 0.03 + 0.3, 1e-14); // differences by 2^2 - 1, times 3
   EXPECT_TRUE(table.rows[0].is_complete());
