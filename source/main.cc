@@ -3,6 +3,7 @@
 
 #include <tanktread/base/command_line.h>
 #include <tanktread/base/mpi_errors.h>
+#include <tanktread/base/mpi_start.h>
 #include <tanktread/base/version.h>
 #include <tanktread/simulation/simulation.h>
 #include <tanktread/simulation/study.h>
@@ -63,6 +64,7 @@ main(int argc, char *argv[])
       const std::vector<std::string> words(argv + 1, argv + argc);
       argc    = 1; // PETSc would take our options for its own: deal.II initialises it even if it is not used.
       argv[1] = nullptr;
+      tanktread::expect_ranks_on_one_machine();
       const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
       return tanktread::exit_code_of(MPI_COMM_WORLD, [&words] { work(words); });
     }
