@@ -18,7 +18,7 @@ namespace tanktread
   namespace
   {
     // Parts of the target that each cause may have.
-    constexpr double of_cells = 0.45, of_steps = 0.3, of_newton = 0.25, of_stop = 0.5, of_control_mesh = 0.55;
+    constexpr double of_cells = 0.45, of_steps = 0.3, of_newton = 0.2, of_stop = 0.5, of_control_mesh = 0.55;
 
     // The model: doc/accuracy.md, "The dial". Errors are relative to the largest D; h in a.
     constexpr double cells_factor = 0.045, cells_order = 3.;                   // one viscosity
