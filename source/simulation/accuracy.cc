@@ -46,6 +46,15 @@ namespace tanktread
     }
 
 
+    /** How much longer a nearly spherical drop of that viscosity ratio takes to relax than one of ratio 1 (Taylor): so much longer errors of steps add up. */
+    double
+    memory_of_shape(const Parameters &parameters)
+    {
+      const auto time = [](const double ratio) { return (19. * ratio + 16.) * (2. * ratio + 3.) / (40. * (ratio + 1.)); };
+      return std::clamp(time(parameters.scene.viscosity_ratio) / time(1.), 1., 4.);
+    }
+
+
     double
     cells_error(const Parameters &parameters, const double h)
     {
@@ -170,11 +179,11 @@ namespace tanktread
     if (!source.is_set("Time/Step"))
       {
         choose("Time", "Step", "1");
-        choose("Time", "Tolerance", number(of_steps * target * D / steps_factor));
+        choose("Time", "Tolerance", number(of_steps * target * D / (steps_factor * memory_of_shape(parameters))));
       }
     if (!source.is_set("Time/Steady tolerance"))
       choose("Time", "Limit tolerance", number(of_stop * target));
-    const double newton = std::clamp(of_newton * target * D / newton_factor, 1e-7, 1e-2);
+    const double newton = std::clamp(of_newton * target * D / (newton_factor * memory_of_shape(parameters)), 1e-7, 1e-2);
     choose("Solver", "Newton tolerance", number(newton));
     choose("Solver", "Volume tolerance", number(std::min(1e-3, 0.01 * newton)));
     return result;
@@ -194,8 +203,8 @@ namespace tanktread
     if (parameters.capsule.shape != Shape::file)
       result.push_back({"control mesh", control_mesh_error(parameters.shell_mesh.level), 1.2});
     if (parameters.time.tolerance > 0. && parameters.time.scheme == TimeScheme::bdf3)
-      result.push_back({"steps", steps_factor * parameters.time.tolerance / D, std::pow(2., 1. / 3.)});
-    result.push_back({"Newton tolerance", newton_factor * parameters.solver.newton_tolerance / D, 1.05});
+      result.push_back({"steps", steps_factor * memory_of_shape(parameters) * parameters.time.tolerance / D, std::pow(2., 1. / 3.)});
+    result.push_back({"Newton tolerance", newton_factor * memory_of_shape(parameters) * parameters.solver.newton_tolerance / D, 1.05});
     if (parameters.scene.boundary == Boundary::faces)
       {
         const double side = *std::min_element(parameters.scene.box_side.begin(), parameters.scene.box_side.end());
