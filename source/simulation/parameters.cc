@@ -33,6 +33,21 @@ namespace tanktread
         }
     }
 
+    bool
+    shape_is_sound(const CapsuleShapeParameters &capsule)
+    {
+      try
+        {
+          capsule.check();
+          check_mesh_file(capsule);
+          return true;
+        }
+      catch (const InputError &)
+        {
+          return false;
+        }
+    }
+
     void
     check_solver(const SceneParameters &scene, const SolverParameters &solver)
     {
@@ -52,7 +67,8 @@ namespace tanktread
     {
       parameters.study.check(parameters.capsule.shape == Shape::file ? -1 : int(parameters.shell_mesh.level),
                              parameters.time.steady_tolerance > 0. || parameters.time.limit_tolerance > 0.,
-                             parameters.scene.boundary == Boundary::unbounded);
+                             parameters.scene.boundary == Boundary::unbounded,
+                             parameters.accuracy.target_error > 0.);
     }
 
     void
@@ -147,12 +163,11 @@ namespace tanktread
     const ParameterSource source = read_parameter_file(prm, file, overrides);
     parameters.file              = file;
     complete_file_names(prm, parameters);
-    parameters.check(source);
-    parameters.choices = accuracy_choices(parameters, source);
+    if (shape_is_sound(parameters.capsule)) // otherwise check() says what is wrong with it
+      parameters.choices = accuracy_choices(parameters, source);
     for (const Choice &choice : parameters.choices)
       set(prm, choice.section, choice.name, choice.value);
-    if (!parameters.choices.empty())
-      parameters.check(source);
+    parameters.check(source);
     parameters.used = parameters_as_prm(prm);
     return parameters;
   }

@@ -12,6 +12,7 @@
 #include <chrono>
 #include <cmath>
 #include <fstream>
+#include <iomanip>
 #include <sstream>
 
 namespace tanktread
@@ -64,8 +65,9 @@ namespace tanktread
     for (const StudyRun &run : plan_.runs)
       {
         std::vector<std::string> of_run = overrides;
-        for (const Choice &choice : parameters.choices) // companions differ from the run in their cause alone
-          of_run.push_back(choice.section + "/" + choice.name + "=" + choice.value);
+        if (run.coarser.count(Cause::target) == 0) // other companions differ from the run in their cause alone
+          for (const Choice &choice : parameters.choices)
+            of_run.push_back(choice.section + "/" + choice.name + "=" + choice.value);
         if (!run.coarser.empty())
           for (const std::string &change : changes(parameters, run))
             of_run.push_back(change);
@@ -77,6 +79,7 @@ namespace tanktread
           {
             throw InputError("The companion " + run.name() + " of section Study cannot be made:\n" + error.what());
           }
+        overrides_.push_back(of_run);
       }
   }
 
@@ -112,6 +115,25 @@ namespace tanktread
 
 
   void
+  Study::end_companions_with_the_run()
+  {
+    double end = 0.;
+    on_first_rank(communicator_, [&] { end = end_of_run(parameters_[0].output.directory).value_or(0.); });
+    end = dealii::Utilities::MPI::broadcast(communicator_, end, 0);
+    if (end >= parameters_[0].scene.end_time)
+      return;
+    std::ostringstream time;
+    time << std::setprecision(15) << end;
+    for (std::size_t i = 1; i < parameters_.size(); ++i)
+      {
+        for (const std::string &setting : {"Scene/End time=" + time.str(), std::string("Time/Steady tolerance=0"), std::string("Time/Limit tolerance=0")})
+          overrides_[i].push_back(setting);
+        parameters_[i] = read_parameters(parameters_[0].file, overrides_[i]);
+      }
+  }
+
+
+  void
   Study::write_table(const StudyTable &table)
   {
     const std::string &folder = parameters_[0].output.directory;
@@ -134,6 +156,8 @@ namespace tanktread
     for (std::size_t i = 0; i < plan_.runs.size(); ++i)
       if (const std::string failure = do_run(i); !failure.empty())
         failures += "\n" + failure;
+      else if (i == 0)
+        end_companions_with_the_run();
     StudyTable table;
     on_first_rank(communicator_, [&] {
       std::vector<std::optional<std::map<std::string, double>>> summaries;

@@ -12,7 +12,7 @@ namespace tanktread
 {
   namespace
   {
-    const std::vector<std::string> words = {"mesh", "cells", "control mesh", "step", "box", "stop", "tolerances"}; // in the order of Cause
+    const std::vector<std::string> words = {"mesh", "cells", "control mesh", "step", "box", "stop", "tolerances", "target"}; // in the order of Cause
   }
 
 
@@ -34,8 +34,9 @@ namespace tanktread
       "Vary",
       vary,
       "Causes of errors to be told apart by coarser companions of the run: mesh (cells and control mesh, spacings doubled), cells, control mesh, "
-      "step (Time/Step doubled, or Time/Tolerance eightfold), box (half the side, in unbounded liquid twice), stop (no companion: from the limit "
-      "that the run's history is extrapolated to), tolerances (Newton tolerance tenfold). Empty: the run alone.",
+      "step (Time/Step doubled, or Time/Tolerance as much larger as doubles the steps), box (half the side, in unbounded liquid twice), stop (no companion: from the limit "
+      "that the run's history is extrapolated to), tolerances (Newton tolerance tenfold), target (Accuracy/Target error fourfold: one companion for all that it chooses). "
+      "Companions end when the run does. Empty: the run alone.",
       dealii::Patterns::List(dealii::Patterns::Selection(selection)));
     prm.add_parameter("Levels",
                       levels,
@@ -61,7 +62,7 @@ namespace tanktread
 
 
   void
-  StudyParameters::check(const int control_mesh_level, const bool has_stop, const bool is_unbounded) const
+  StudyParameters::check(const int control_mesh_level, const bool has_stop, const bool is_unbounded, const bool has_target) const
   {
     const auto names = [this](const Cause cause) { return std::count(vary.begin(), vary.end(), word(cause)); };
     for (const Cause cause : causes())
@@ -71,6 +72,10 @@ namespace tanktread
       throw InputError("Study/Vary names mesh beside cells or control mesh; mesh is both of them");
     if (names(Cause::stop) > 0 && !has_stop)
       throw InputError("Study/Vary names stop; allowed with Time/Steady tolerance > 0 or Time/Limit tolerance > 0");
+    if (names(Cause::target) > 0 && !has_target)
+      throw InputError("Study/Vary names target; allowed with Accuracy/Target error > 0");
+    if (names(Cause::target) > 0 && vary.size() > 1u + names(Cause::stop))
+      throw InputError("Study/Vary names target, which varies all causes; allowed beside it: stop");
     if (is_unbounded && together && names(Cause::box) > 0)
       throw InputError("Study/Vary names box; allowed with Study/Together and Scene/Boundary = unbounded: what is coarser in companions, the box is larger");
     // The frugal companions of other causes have a mesh that is coarser once, which is no coarser than the last companion of the mesh.

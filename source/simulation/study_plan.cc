@@ -13,7 +13,7 @@ namespace tanktread
 {
   namespace
   {
-    constexpr double tolerance_ratio = 10.;
+    constexpr double tolerance_ratio = 10., target_ratio = 4.;
 
     std::string
     number(const double value)
@@ -91,7 +91,7 @@ namespace tanktread
   {
     if (causes.size() > 1)
       return 2.;
-    return causes[0] == Cause::tolerances ? tolerance_ratio : 2.;
+    return causes[0] == Cause::tolerances ? tolerance_ratio : causes[0] == Cause::target ? target_ratio : 2.;
   }
 
 
@@ -117,6 +117,7 @@ namespace tanktread
             lowest = std::min(lowest, parameters.scene.boundary == Boundary::unbounded ? 5. : 3.);
             break;
           case Cause::tolerances:
+          case Cause::target:
             lowest = std::min(lowest, 1.);
             break;
           case Cause::stop: // the run tells
@@ -169,12 +170,15 @@ namespace tanktread
         if (cause == Cause::mesh || cause == Cause::control_mesh)
           result.push_back("Shell mesh/Level=" + std::to_string(parameters.shell_mesh.level - n));
         if (cause == Cause::step)
-          result.push_back(parameters.time.tolerance > 0. ? "Time/Tolerance=" + number(parameters.time.tolerance * power(8., n))
-                                                          : "Time/Step=" + number(parameters.time.step * power(2., n)));
+          result.push_back(parameters.time.tolerance > 0.
+                             ? "Time/Tolerance=" + number(parameters.time.tolerance * power(2., (order(parameters.time.scheme) + 1) * n))
+                             : "Time/Step=" + number(parameters.time.step * power(2., n)));
         if (cause == Cause::box)
           result.push_back("Scene/Box side=" + box_sides(parameters.scene.box_side, power(parameters.scene.boundary == Boundary::unbounded ? 0.5 : 2., n)));
         if (cause == Cause::tolerances)
           result.push_back("Solver/Newton tolerance=" + number(parameters.solver.newton_tolerance * power(tolerance_ratio, n)));
+        if (cause == Cause::target)
+          result.push_back("Accuracy/Target error=" + number(parameters.accuracy.target_error * power(target_ratio, n)));
       }
     return result;
   }

@@ -81,6 +81,18 @@ namespace tanktread
   } // namespace
 
 
+  std::optional<double>
+  end_of_run(const std::string &folder)
+  {
+    std::ifstream file(folder + "/summary.csv");
+    std::string   line;
+    while (std::getline(file, line))
+      if (line.compare(0, 3, "end") == 0)
+        return std::strtod(line.substr(line.find(',') + 1).c_str(), nullptr);
+    return std::nullopt;
+  }
+
+
   std::optional<std::map<std::string, double>>
   finished_summary(const std::string &folder)
   {

@@ -128,12 +128,12 @@ TEST(StudyPlan, SaysWhatACompanionSets)
 
 TEST(StudyParameters, RefuseWhatCannotBeVaried)
 {
-  EXPECT_NO_THROW(study_of({"mesh", "stop"}).check(1, true, false));
-  EXPECT_THROW(study_of({"mesh", "cells"}).check(3, true, false), InputError);
-  EXPECT_THROW(study_of({"step", "step"}).check(3, true, false), InputError);
-  EXPECT_THROW(study_of({"stop"}).check(3, false, false), InputError);
-  EXPECT_THROW(study_of({"mesh"}, 3).check(1, true, false), InputError);
-  EXPECT_THROW(study_of({"control mesh"}).check(-1, true, false), InputError);
+  EXPECT_NO_THROW(study_of({"mesh", "stop"}).check(1, true, false, false));
+  EXPECT_THROW(study_of({"mesh", "cells"}).check(3, true, false, false), InputError);
+  EXPECT_THROW(study_of({"step", "step"}).check(3, true, false, false), InputError);
+  EXPECT_THROW(study_of({"stop"}).check(3, false, false, false), InputError);
+  EXPECT_THROW(study_of({"mesh"}, 3).check(1, true, false, false), InputError);
+  EXPECT_THROW(study_of({"control mesh"}).check(-1, true, false, false), InputError);
 }
 
 TEST(StudyPlan, TakesLargerBoxesInUnboundedLiquid)

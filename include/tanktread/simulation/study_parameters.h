@@ -23,7 +23,8 @@ namespace tanktread
     step,
     box,
     stop,
-    tolerances
+    tolerances,
+    target // all that Accuracy/Target error chooses
   };
 
   /** As in the parameter file. */
@@ -56,7 +57,7 @@ namespace tanktread
      * cannot vary.
      */
     void
-    check(int control_mesh_level, bool has_stop, bool is_unbounded) const;
+    check(int control_mesh_level, bool has_stop, bool is_unbounded, bool has_target) const;
   };
 } // namespace tanktread
 

@@ -14,6 +14,10 @@
 
 namespace tanktread
 {
+  /** The time at which the run of this folder has ended, by its summary; nothing without one. */
+  std::optional<double>
+  end_of_run(const std::string &folder);
+
   /** The finite numbers of a summary.csv by their names, nothing if the file is missing or its run has failed. Names of times, "from" and "end", are left out. */
   std::optional<std::map<std::string, double>>
   finished_summary(const std::string &folder);
