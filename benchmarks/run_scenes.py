@@ -124,12 +124,13 @@ class Computation:
             words = line.split()
             if len(words) > 2 and re.fullmatch(r"\d+", words[0]):
                 self.progress.show(title, f"t = {words[1]} of {end:g}, remaining {words[-1]}")
-        code = process.wait()
+        _, status, used = os.wait4(process.pid, 0)  # for its CPU seconds, those of all ranks
+        code = process.returncode = os.waitstatus_to_exitcode(status)
         if self.stopped:
             return
         message = "" if code == 0 else next((text for text in tail if "not available" in text or "FAILED" in text), " ".join(tail[-1:]))
         seconds = round(time.time() - start, 1)
-        record = {"input": run.key(settings), "exit_code": code, "message": message, "seconds": seconds, "ranks": self.ranks, "settings": settings}
+        record = {"input": run.key(settings), "exit_code": code, "message": message, "seconds": seconds, "cpu_seconds": round(used.ru_utime + used.ru_stime, 2), "ranks": self.ranks, "settings": settings}
         folder.mkdir(parents=True, exist_ok=True)
         (folder / "run.json").write_text(json.dumps(record, indent=1) + "\n")
         self.progress.end(title, ("done" if code == 0 else f"exit code {code}: {message}") + f", {seconds:.0f} s")

@@ -4,7 +4,7 @@
 """Takes the program's command line, FILE.prm --set Section/Parameter=value ..., and leaves a folder like one of its own.
 
 The scenes of benchmarks/flows get their reference solution, read off at other times, in the frame of the box, with D larger by the factor 1 + (4/side)^3;
-the rest a capsule whose D goes to 0.3.
+those of benchmarks/work_precision a capsule whose D and intrinsic viscosity are too large by a tenth of the square of the finest cell; the rest a capsule whose D goes to 0.3.
 """
 
 import math
@@ -21,6 +21,23 @@ REFERENCES = {"crossing_pair": "crossing_pair_Ca0.45", "planar_extension": "plan
 def write(file, names, rows):
     lines = [",".join(f"{row.get(name, 0):.9g}" for name in names) for row in rows]
     file.write_text("\n".join([",".join(names), *lines]) + "\n")
+
+
+REFINED = ("sphere", "sphere_lambda5", "oblate", "biconcave")
+PARAMETERS = "subsection Time\n  # Allowed: one of BDF2, backward\n  # Euler. Default: BDF2.\n  set Scheme = BDF2\nend\n"
+
+
+def refined(cell, step, end):
+    """Rows of a capsule whose errors are known."""
+    for i in range(round(end / step) + 1):
+        t, factor = i * step, 1 + 0.1 * cell**2
+        D = 0.4 - 0.02 * t
+        yield {"time": t, "D_xz": factor * D, "theta": 0.25 - 0.05 * t, "L": 1 + D, "B": 1 - D, "W": 1, "volume": 4.18, "area": 12.5, "step": step, "cells": 100, "newton_iterations": 2,
+               "linear_iterations": 8, "alpha": 0.1 * t, "intrinsic_viscosity": factor * (2 + t)}
+
+
+def end_of(prm):
+    return next(float(line.split("=")[1]) for line in prm.read_text().splitlines() if "End time" in line)
 
 
 def simple():
@@ -57,14 +74,19 @@ def circles(rows):
 
 
 def main():
+    if sys.argv[1] in ("--print-parameters", "--version"):
+        print(PARAMETERS if sys.argv[1] == "--print-parameters" else "Tanktread, a stand-in")
+        return
     settings = dict(word.split("=", 1) for word in sys.argv[2:] if word != "--set")
     prm, folder = pathlib.Path(sys.argv[1]), pathlib.Path(settings["Output/Directory"])
     folder.mkdir(parents=True, exist_ok=True)
     if prm.stem in REFERENCES:
         file = prm.parents[1] / f"reference/{REFERENCES[prm.stem]}_prestress0.05.csv"
-        end = next(float(line.split("=")[1]) for line in prm.read_text().splitlines() if "End time" in line)
+        end = end_of(prm)
         frame = float(settings.get("Scene/Frame velocity", "0").split(",")[0])
         rows = from_reference(file, float(settings["Scene/Box side"].split(",")[-1]), frame, end)
+    elif prm.stem in REFINED and "Fluid mesh/Finest cell" in settings:
+        rows = list(refined(float(settings["Fluid mesh/Finest cell"]), float(settings["Time/Step"]), end_of(prm)))
     else:
         rows = list(simple())
     if prm.stem == "crossing_pair":

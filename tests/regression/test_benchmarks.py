@@ -3,6 +3,7 @@
 # Part of Tanktread: tests of the scripts of benchmarks/, in a copy of the repository and with a stand-in for the program.
 """What a user's call changes and what it leaves, what is said where Python lacks a package, and the figures of runs."""
 
+import csv
 import os
 import pathlib
 import shutil
@@ -23,7 +24,7 @@ import numpy as np  # noqa: E402
 import run_files  # noqa: E402
 import run_scenes  # noqa: E402
 
-SCRIPTS = ["plot_run.py", "plot_study.py", "interface_study.py", "box_study.py", "le_2010/run.py", "flows/run.py"]
+SCRIPTS = ["plot_run.py", "plot_study.py", "interface_study.py", "box_study.py", "le_2010/run.py", "flows/run.py", "work_precision/run.py"]
 
 
 class Repository(unittest.TestCase):
@@ -166,6 +167,48 @@ class Flows(Repository):
         self.assertIn("difference +0.100 %", said)
         self.assertIn("deformation.png: 2 capsule(s)", said)
         self.assertIn("contour.png: 2 capsule(s)", said)
+
+
+class WorkPrecision(Repository):
+    """The stand-in's D is larger by a tenth of the square of the cell, everything else is right."""
+
+    def run_biconcave(self, *words):
+        (self.root / "tanktread").write_text(self.program.read_text())
+        (self.root / "tanktread").chmod(0o755)
+        return self.passes("work_precision/run.py", "--build", str(self.root), "--quick", "--scenes", "biconcave", *words)
+
+    def points(self, file="output/work_precision/points.csv"):
+        lines = [line for line in (self.root / file).read_text().splitlines() if not line.startswith("#")]
+        return list(csv.DictReader(lines))
+
+    def test_errors_of_the_stand_in_are_found(self):
+        before = self.doc()
+        self.run_biconcave()
+        self.assertEqual(self.doc(), before)
+        rows = self.points()
+        for row in rows:
+            cell = float(dict(setting.split("=") for setting in row["settings"].split("; "))["Fluid mesh/Finest cell"])
+            for quantity, error in (("D", 0.1 * cell**2), ("viscosity", 0.1 * cell**2), ("theta", 0)):
+                self.assertAlmostEqual(float(row[f"error_{quantity}"]), error, delta=1e-4 * error + 1e-8, msg=row["run"])
+        cells = [row for row in rows if row["cause"] == "cells"]
+        self.assertEqual([row["run"] for row in cells], ["h16_l2_dt0.1", "h32_l2_dt0.1", "h64_l2_dt0.1"])
+        self.assertIn("backward Euler", {row["cause"] for row in rows})
+        page = (self.root / "output/work_precision/work_precision.md").read_text()
+        self.assertIn("| biconcave | cells | 0.625 … 0.156 | 3.9 % … 0.24 % | 1.99 | 2 |", page)
+        self.assertTrue((self.root / "output/work_precision/work_precision.png").is_file())
+
+    def test_nothing_is_computed_twice_and_doc_changes_where_it_was_asked_to(self):
+        self.assertIn("h32_l2_dt0.1 biconcave: done", self.run_biconcave())
+        record = self.root / "output/work_precision/h32_l2_dt0.1/biconcave/run.json"
+        before, doc = record.stat().st_mtime_ns, self.doc()
+        self.assertNotIn("biconcave: done", self.run_biconcave("--doc"))
+        self.assertEqual(record.stat().st_mtime_ns, before)
+        changed = {name for name, content in self.doc().items() if doc.get(name) != content}
+        self.assertEqual(changed, {"doc/work_precision.md", "doc/figures/work_precision.png"})
+        self.assertEqual(self.points(), self.points("benchmarks/work_precision/points.csv"))
+        shutil.rmtree(self.root / "output")
+        self.run_biconcave("--draw")
+        self.assertIn("## Cheapest", (self.root / "output/work_precision/work_precision.md").read_text())
 
 
 class Packages(Repository):
