@@ -11,7 +11,6 @@ import datetime
 import os
 import pathlib
 import platform
-import subprocess
 import sys
 
 import numpy as np
@@ -97,10 +96,11 @@ def costs_of(scene, choice):
     record, table = record_of(scene, choice), history(scene, choice)
     result = {"cpu_seconds": record["cpu_seconds"], "wall_seconds": record["seconds"]}
     if table:
-        result.update(steps=len(table["time"]) - 1, cells=int(table["cells"][-1]), control_points=10 * 4**choice.level + 2,
+        result.update(steps=len(table["time"]) - 1, cells=int(table["cells"][-1]),
                       newton_iterations=round(float(np.mean(table["newton_iterations"][1:])), 3), linear_iterations=round(float(np.mean(table["linear_iterations"][1:])), 2))
-        if choice.target:
-            del result["control_points"]
+        used = run_files.read_parameters(run_of(scene).folder(sweeps.name(choice)) / "used_parameters.prm")
+        if "Shell mesh/Level" in used:
+            result["control_points"] = 10 * 4 ** int(used["Shell mesh/Level"]) + 2
     return result
 
 
@@ -130,11 +130,15 @@ def processor():
     return f"{os.cpu_count()} cores, {names[0] if names else platform.processor() or 'processor unknown'}, {platform.machine()}"
 
 
-def collect(of, program, mode, jobs):
+def programs(of):
+    """First lines of the logs of all runs: version and revision, each once."""
+    logs = [run_of(scene).folder(sweeps.name(point.choice)) / "log.txt" for scene in sweeps.SCENES for point in of[scene.name]]
+    return "; ".join(dict.fromkeys(log.read_text().partition("\n")[0] for log in logs if log.is_file()))
+
+
+def collect(of, mode, jobs):
     """(notes, rows): the table of all points. of: {scene name: points}."""
-    version = subprocess.run([program, "--version"], stdout=subprocess.PIPE, text=True).stdout.splitlines()
-    notes = {"machine": processor(), "date": f"{datetime.date.today()}", "program": version[0] if version else "", "mode": mode, "runs at a time": f"{jobs}, one rank each"}
-    rows = []
+    notes, rows = {"machine": processor(), "date": f"{datetime.date.today()}", "program": programs(of), "mode": mode, "runs at a time": f"{jobs}, one rank each"}, []
     for scene in sweeps.SCENES:
         found, truth = rows_of(scene, of[scene.name])
         rows += found

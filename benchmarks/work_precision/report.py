@@ -87,6 +87,17 @@ def advice(notes, rows, scene):
     return text + (f" What is true is itself uncertain by {percent(doubt)}." if doubt > 0 else "") + "\n"
 
 
+def dial(rows):
+    """What runs with a target error have reached: "" if there are none."""
+    body = []
+    for scene in scenes_in(rows):
+        for row in of(rows, scene, "target error"):
+            body.append([scene.title, percent(row["value"]), percent(row["error_D"]), plain(row["error_D"] / row["value"], 2), percent(row["error_theta"] * 0.25), percent(row["end_error_D"]),
+                         plain(row["cells"], 6), plain(row["control_points"], 6), plain(row["steps"], 6), plain(row["cpu_seconds"])])
+    head = ["scene", "Accuracy/Target error", "error of D, all times", "over the target", "error of θ/π, all times, absolute", "error of D at the end", "cells", "control points", "steps", "CPU s"]
+    return "\n## Target error\n\nRuns with nothing set but the target and the boundary.\n\n" + table(head, body) if body else ""
+
+
 def powers(rows):
     """Powers of the differences with the parameter, of the error with the parameter and with CPU seconds, where these differ enough to have one."""
     body = []
@@ -123,7 +134,7 @@ Error against CPU seconds of one rank for four capsules in unbounded shear flow,
     benchmarks/work_precision/run.py --build build/release --doc{quick}
 
 on {machine}, {date}, runs at a time: {jobs}; {program}. Wall over CPU seconds: {disturbed} in the middle, 1 where no neighbour disturbs. Runs are named by cells per 10a at the shell (h), level of the control mesh (l), step (dt), and what else differs from the enriched
-interface, BDF2 without tolerance, unbounded liquid in a box of 7.5a, tolerances 10⁻⁵ (Newton) and 0.1 (linear), matrix-free and implicit.
+interface, BDF3 without tolerance, unbounded liquid in a box of 7.5a, tolerances 10⁻⁴ (Newton) and 0.1 (linear), matrix-free and implicit.
 
 - **Errors at all times** are the largest difference at the rows of a run, those of the first steps included, over the largest D or [η]; of θ over π/4. **At the end**: of the last row from
   the steady state. **Period**: time between the last two maxima of D.
@@ -153,6 +164,7 @@ def page(notes, rows, figure):
     text += "\n## What limits\n\nChange (largest over all times) from the run at the head of a column to the finest of each sweep: what a cause is worth there; below the errors of that run. "
     text += "Of a cause of second order that ends with half the parameter, 3/4 are seen.\n\n" + "\n".join(limits(notes, rows, quantity) for quantity in norms.QUANTITIES)
     text += "\n## Cheapest\n\n" + "\n".join(advice(notes, rows, scene) for scene in scenes_in(rows))
+    text += dial(rows)
     text += "\n## Powers\n\nBy least squares in logarithms; differences from one value to the next show the cause alone, errors also what else is wrong.\n\n" + powers(rows)
     for scene in scenes_in(rows):
         text += f"\n## {scene.title}\n\n" + all_points(rows, scene)

@@ -62,7 +62,7 @@ def measure(args):
             if points.record_of(scene, point.choice) is None:
                 wanted[scene.name, sweeps.name(point.choice)] = (points.run_of(scene), sweeps.name(point.choice), sweeps.parameters(point.choice))
     run_scenes.compute(args, list(wanted.values()))
-    return points.collect(of, args.program, "quick" if args.quick else "full", args.jobs)
+    return points.collect(of, "quick" if args.quick else "full", args.jobs)
 
 
 def main():

@@ -6,8 +6,9 @@ import collections
 import math
 import re
 
+# What is usual: the program's defaults, but for the boundary.
 Choice = collections.namedtuple("Choice", "cells level step interface scheme tolerance boundary side newton linear method coupling stop target",
-                                defaults=["enriched", "BDF2", 0, "unbounded", 7.5, 1e-5, 0.1, "matrix-free", "implicit", 0, 0])
+                                defaults=["enriched", "BDF3", 0, "unbounded", 7.5, 1e-4, 0.1, "matrix-free", "implicit", 0, 0])
 Point = collections.namedtuple("Point", "cause value choice")
 # viscosity_ratio as in the parameter file; step: that of the full base, about as good as its mesh; steady, swinging: what else is compared
 Scene = collections.namedtuple("Scene", "name title viscosity_ratio step steady swinging")
@@ -69,12 +70,12 @@ def sweeps(scene, full, schemes, has_dial):
         add("plain interface", "cells", [cells], start._replace(level=level, interface="plain"))
     for scheme in schemes:
         if scheme != start.scheme:
-            add(scheme, "step", [0.4, 0.2, 0.1, 0.05] if full else [0.2, 0.1], start._replace(scheme=scheme))
+            add(scheme, "step", [0.4, 0.2, 0.1, 0.05] if full else [0.4, 0.2], start._replace(scheme=scheme))
     add("tolerance of steps", "tolerance", [1e-2, 3e-3, 1e-3, 3e-4, 1e-4] if full else [1e-3, 1e-4], start._replace(step=0.4))
     add("unbounded box", "side", [5, 7.5, 10])
     add("box between faces", "side", [20, 40] if full else [20], start._replace(boundary="faces"))
     result.append(Point("box between faces", math.inf, start))
-    add("Newton tolerance", "newton", [1e-3, 1e-4, 1e-5, 1e-6] if full else [1e-3, 1e-5, 1e-6])
+    add("Newton tolerance", "newton", [1e-3, 1e-4, 1e-5, 1e-6] if full else [1e-3, 1e-4, 1e-5])
     add("linear tolerance", "linear", [0.5, 0.1, 0.01] if full else [0.1, 0.01])
     if scene.steady:
         add("stop", "stop", [1e-2, 1e-3, 1e-4] if full else [1e-2, 1e-3])
