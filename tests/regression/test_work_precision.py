@@ -45,6 +45,18 @@ class Norms(unittest.TestCase):
         run["D"][1] += 0.05
         self.assertAlmostEqual(norms.largest(run, curve(FINE), "D"), 0.05 / run["D"].max(), places=12)
 
+        run["theta"] = run["theta"].copy()
+        run["theta"][1] += 0.025
+        for dense in (False, True):
+            self.assertAlmostEqual(norms.largest(run, curve(FINE), "theta", dense), 0.1, places=12)
+
+    def test_rows_between_those_of_a_dense_truth_count(self):
+        run = curve(FINE)
+        run["D"] = run["D"].copy()
+        run["D"][7] += 0.05  # COARSE has every fourth row
+        self.assertAlmostEqual(norms.largest(run, curve(COARSE), "D", dense=True), 0.05 / run["D"].max(), places=12)
+        self.assertLess(norms.largest(run, curve(COARSE), "D"), 1e-13)
+
     def test_half_turns_of_the_angle_are_nothing(self):
         self.assertAlmostEqual(norms.largest(curve(FINE, 0, 1.01), curve(FINE), "theta"), 0.04, places=12)
         self.assertAlmostEqual(norms.largest(curve(FINE, 0, -2), curve(FINE), "theta"), 0, places=12)
