@@ -86,7 +86,7 @@ def make(args, run):
     if finished(path):
         return
     settings = {
-        "Scene/Shear number G": run.case.G, "Scene/Reduced bending modulus": run.case.khat, "Scene/Box side": run.box, "Scene/Boundary": "faces",
+        "Accuracy/Target error": 0, "Scene/Shear number G": run.case.G, "Scene/Reduced bending modulus": run.case.khat, "Scene/Box side": run.box, "Scene/Boundary": "faces",
         "Scene/End time": 30 if run.steady else run.case.end, "Capsule/Bending form": run.case.form,
         "Shell mesh/Level": {32: 2, 64: 3, 128: 4}[run.cells], "Fluid mesh/Finest cell": 10 / run.cells,
         "Fluid mesh/Coarsest cell": coarsest_cell(run.box), "Time/Step": run.step, "Time/Steady tolerance": 1e-4 if run.steady else 0,
