@@ -34,9 +34,11 @@ def differences(curve, other, quantity, dense=False):
     """(times, curve - other) while both last and `other` is defined, at the rows of the one that has fewer of them, the other one being read off by cubics; at those of `curve`
     if the rows of `other` are dense enough for that anywhere."""
     end = min(curve["time"][-1], other["time"][-1])
-    curve, other = until(curve, end), until(other, end)
-    times = curve["time"] if dense or len(curve["time"]) <= len(other["time"]) else other["time"]
-    values, wanted = (of[quantity] if of["time"] is times else interpolated(of["time"], of[quantity], times) for of in (curve, other))
+    few, others = until(curve, end), until(other, end)
+    few, many = (few, other) if dense or len(few["time"]) <= len(others["time"]) else (others, curve)
+    times = few["time"]
+    values, wanted = few[quantity], interpolated(many["time"], many[quantity], times)  # by all of its rows: the run may end between two of them
+    values, wanted = (values, wanted) if many is other else (wanted, values)
     result = values - wanted
     if quantity == "theta":
         result = result - np.round(result)

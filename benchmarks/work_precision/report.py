@@ -95,7 +95,7 @@ def dial(rows):
             body.append([scene.title, percent(row["value"]), percent(row["error_D"]), plain(row["error_D"] / row["value"], 2), percent(row["error_theta"] * 0.25), percent(row["end_error_D"]),
                          plain(row["cells"], 6), plain(row["control_points"], 6), plain(row["steps"], 6), plain(row["cpu_seconds"])])
     head = ["scene", "Accuracy/Target error", "error of D, all times", "over the target", "error of θ/π, all times, absolute", "error of D at the end", "cells", "control points", "steps", "CPU s"]
-    return "\n## Target error\n\nRuns with nothing set but the target and the boundary.\n\n" + table(head, body) if body else ""
+    return "\n## Target error\n\nRuns with nothing set but the target and the boundary. The dial also ends a run where it holds its shape for steady: such a run is compared, and costs, as long as it lasts.\n\n" + table(head, body) if body else ""
 
 
 def powers(rows):

@@ -76,6 +76,11 @@ class Norms(unittest.TestCase):
     def test_a_run_that_ends_early_is_compared_as_long_as_it_lasts(self):
         self.assertAlmostEqual(norms.largest(norms.until(curve(FINE, 0.4), 0.25), curve(FINE), "D"), 0.4 * 0.1875 / curve(FINE)["D"].max(), places=12)
 
+    def test_a_run_may_end_between_two_rows_of_the_truth(self):
+        for dense in (False, True):
+            self.assertAlmostEqual(norms.largest(curve(np.linspace(0, 0.56, 9), 0.4), curve(COARSE), "viscosity", dense), 0.4 / 3, places=12)
+        self.assertAlmostEqual(norms.largest(curve(FINE, 0.4), norms.until(curve(COARSE), 0.56), "viscosity"), 0.4 / 2.25, places=12)
+
     def test_second_order_is_removed(self):
         guess = norms.extrapolated(curve(FINE, 0.1, 0.01), curve(COARSE, 0.4, 1.04))  # the angle by half a turn off
         for quantity in norms.QUANTITIES:
