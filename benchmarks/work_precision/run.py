@@ -9,7 +9,7 @@ Errors are those beside the solutions of benchmarks/reference, or beside what th
 points), work_precision.png, work_precision.md. A run that is there with the same scene and settings is not made again, also one that failed; delete its folder to repeat it. With --doc
 doc/work_precision.md, doc/figures/work_precision.png and benchmarks/work_precision/points.csv are renewed.
 
-One run at a time on one rank unless --jobs says otherwise: CPU seconds are longer beside neighbours. Without --quick it takes some hours, with it a quarter of an hour.
+One run at a time on one rank unless --jobs says otherwise: CPU seconds are longer beside neighbours. With --quick it takes a quarter of an hour, else some three hours (by estimate).
 """
 
 import argparse
