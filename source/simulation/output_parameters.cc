@@ -22,6 +22,12 @@ namespace tanktread
                       dealii::Patterns::DirectoryName());
     prm.add_parameter("History interval", history_interval, "Time between rows of history.csv; 0: a row each step.", Double(0.));
     prm.add_parameter("Field interval", field_interval, "Time between VTU files of fluid and shell; 0: only the first and the last.", Double(0.));
+    prm.add_parameter(
+      "Surface subdivisions",
+      surface_subdivisions,
+      "How often each face of the control mesh is divided into four in the files of the shell. Their points lie on the smooth surface, with its "
+      "normals; each subdivision makes the files four times larger.",
+      dealii::Patterns::Integer(0, 5));
     prm.add_parameter("Contour times",
                       contour_times,
                       "Times at which the cut of the shell with the plane y = 0 is written, besides those of the fields; the steps need not meet them.",

@@ -7,7 +7,6 @@
 #include <tanktread/base/output_file.h>
 #include <tanktread/fluid/field_output.h>
 #include <tanktread/simulation/results.h>
-#include <tanktread/surface/capsule_shape.h>
 #include <tanktread/surface/contour.h>
 #include <tanktread/surface/interior.h>
 #include <tanktread/surface/surface_operators.h>
@@ -45,16 +44,20 @@ namespace tanktread
       return n_capsules == 1 ? "" : "_" + std::to_string(c + 1);
     }
 
-    /** Fields on the vertices of one shell, for pictures. */
-    struct ShellPicture
+    /** With so many subdivisions the polygon that is cut is close to the smooth surface. */
+    constexpr unsigned int contour_subdivisions = 2;
+
+    /** Points of one shell and fields there. */
+    struct ShellPoints
     {
       ControlPoints                                        positions;
       std::vector<std::pair<std::string, Eigen::MatrixXd>> fields;
     };
 
-    ShellPicture
-    picture(const Capsule &capsule, const SparseMatrix &limit, const ControlPoints &x, const ControlPoints &velocity)
+    ShellPoints
+    shell_points(const Capsule &capsule, const LimitPicture &picture, const ControlPoints &x, const ControlPoints &velocity)
     {
+      const SparseMatrix                                      &limit   = picture.S();
       const SubdivisionSurface                                &surface = capsule.surface();
       const Eigen::VectorXd                                    weights = area_weights(surface, x);
       const ControlPoints                                      f       = capsule.shell().force(x);
@@ -65,7 +68,10 @@ namespace tanktread
       const auto projected = [&](const Eigen::VectorXd &at_points) -> Eigen::VectorXd {
         return limit * Eigen::VectorXd(mass.solve(surface.S().transposed_times(weights.cwiseProduct(at_points))));
       };
-      ShellPicture result{limit * x, {{"velocity", limit * velocity}, {"force_density", limit * Eigen::MatrixXd(mass.solve(Eigen::MatrixXd(f)))}}};
+      ShellPoints result{limit * x,
+                         {{"normals", picture.normals(x)},
+                          {"velocity", limit * velocity},
+                          {"force_density", limit * Eigen::MatrixXd(mass.solve(Eigen::MatrixXd(f)))}}};
       result.fields.emplace_back("area_stretch", projected(weights.cwiseQuotient(capsule.shell().reference_weights())));
       if (surface.derivatives() == Derivatives::second)
         result.fields.emplace_back("mean_curvature", projected(mean_curvature(surface, x)));
@@ -74,7 +80,7 @@ namespace tanktread
 
     /** Puts the fields of one shell below those of the others. */
     void
-    append(const ShellPicture &shell, ShellPicture &all)
+    append(const ShellPoints &shell, ShellPoints &all)
     {
       if (all.fields.empty())
         {
@@ -116,7 +122,11 @@ namespace tanktread
   } // namespace
 
 
-  Results::Results(const std::string &folder, const unsigned int n_capsules, const MPI_Comm communicator)
+  Results::Results(const std::string  &folder,
+                   const TriangleMesh &topology,
+                   const unsigned int  n_capsules,
+                   const unsigned int  surface_subdivisions,
+                   const MPI_Comm      communicator)
     : folder_(folder)
     , communicator_(communicator)
     , n_capsules_(n_capsules)
@@ -130,7 +140,9 @@ namespace tanktread
           histories_.push_back(std::make_unique<CsvWriter>(folder + "/history" + end, names(history_row({}, {}))));
           contours_.push_back(std::make_unique<CsvWriter>(folder + "/contours" + end, std::vector<std::string>{"time", "x", "z"}));
         }
-      suspension_ = std::make_unique<CsvWriter>(folder + "/suspension.csv", names(suspension_row({}, {})));
+      suspension_      = std::make_unique<CsvWriter>(folder + "/suspension.csv", names(suspension_row({}, {})));
+      surface_picture_ = std::make_unique<LimitPicture>(topology, surface_subdivisions);
+      contour_picture_ = std::make_unique<LimitPicture>(topology, contour_subdivisions);
     });
   }
 
@@ -149,18 +161,17 @@ namespace tanktread
   void
   Results::write_shells(const std::string &file, const Capsule &capsule, const State &state, const ShellFields &velocities) const
   {
-    const SparseMatrix              limit = vertex_limit_stencils(capsule.topology());
-    ShellPicture                    all;
+    ShellPoints                     all;
     std::vector<std::array<int, 3>> faces;
-    Eigen::VectorXd                 number(0);
+    const int                       n_points = int(surface_picture_->S().rows());
+    Eigen::VectorXd                 number(n_points * Eigen::Index(n_capsules_));
     for (unsigned int c = 0; c < n_capsules_; ++c)
       {
-        append(picture(capsule, limit, state.capsules[c].x, velocities[c]), all);
-        const int first = int(c * capsule.n_control_points());
-        for (const auto &face : capsule.topology().faces)
+        append(shell_points(capsule, *surface_picture_, state.capsules[c].x, velocities[c]), all);
+        const int first = int(c) * n_points;
+        for (const auto &face : surface_picture_->faces())
           faces.push_back({face[0] + first, face[1] + first, face[2] + first});
-        number.conservativeResize(first + capsule.n_control_points());
-        number.tail(capsule.n_control_points()).setConstant(c + 1);
+        number.segment(first, n_points).setConstant(c + 1);
       }
     if (n_capsules_ > 1)
       all.fields.emplace_back("capsule", number);
@@ -169,18 +180,16 @@ namespace tanktread
 
 
   void
-  Results::write_contours(const double time, const TriangleMesh &topology, const ShellFields &x)
+  Results::write_contours(const double time, const ShellFields &x)
   {
     for (unsigned int c = 0; c < n_capsules_; ++c)
       {
-        // Refined twice, the polygon that is cut is close to the smooth surface.
         const Eigen::RowVector3d middle(0., x[c].col(1).mean(), 0.);
-        TriangleMesh             mesh = topology;
-        for (Eigen::Index i = 0; i < x[c].rows(); ++i)
-          mesh.vertices[i] = x[c].row(i) - middle;
-        mesh = loop_refine(loop_refine(mesh));
-        const Eigen::Map<const ControlPoints> refined(mesh.vertices.front().data(), mesh.vertices.size(), 3);
-        for (const Eigen::Vector2d &point : shear_plane_contour(limit_mesh(mesh, refined)))
+        const ControlPoints      limit = contour_picture_->S() * (x[c].rowwise() - middle);
+        TriangleMesh             mesh{{}, contour_picture_->faces()};
+        for (Eigen::Index i = 0; i < limit.rows(); ++i)
+          mesh.vertices.emplace_back(limit.row(i));
+        for (const Eigen::Vector2d &point : shear_plane_contour(mesh))
           contours_[c]->row({time, point[0], point[1]});
       }
   }
@@ -214,7 +223,7 @@ namespace tanktread
     on_first_rank(communicator_, [&] {
       const std::string shell_file = "shell_" + number.str() + ".vtu";
       write_shells(folder_ + "/" + shell_file, capsule, state, velocities);
-      write_contours(time, capsule.topology(), positions(state));
+      write_contours(time, positions(state));
       shell_series_.add(time, shell_file);
       fluid_series_.add(time, fluid_file);
     });
@@ -223,9 +232,9 @@ namespace tanktread
 
 
   void
-  Results::add_contours(const double time, const Capsule &capsule, const ShellFields &x)
+  Results::add_contours(const double time, const ShellFields &x)
   {
-    on_first_rank(communicator_, [&] { write_contours(time, capsule.topology(), x); });
+    on_first_rank(communicator_, [&] { write_contours(time, x); });
   }
 
 

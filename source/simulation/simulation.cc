@@ -137,7 +137,7 @@ namespace tanktread
       log_.line(accuracy_text(parameters_));
     if (!moved_to.empty())
       log_.line("The folder held a former run, now in " + moved_to + ".");
-    results_ = std::make_unique<Results>(folder, state_.capsules.size(), communicator_);
+    results_ = std::make_unique<Results>(folder, scene_.capsule().topology(), state_.capsules.size(), parameters_.output.surface_subdivisions, communicator_);
   }
 
 
@@ -292,7 +292,7 @@ namespace tanktread
   {
     for (const double time : parameters_.output.contour_times)
       if (time > memory_.time - length + rounding() && time <= memory_.time + rounding() && !(but_now && time > memory_.time - rounding()))
-        results_->add_contours(time, scene_.capsule(), stepper_.position(time));
+        results_->add_contours(time, stepper_.position(time));
   }
 
 

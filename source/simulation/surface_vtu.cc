@@ -7,6 +7,7 @@
 #include <tanktread/base/output_file.h>
 #include <tanktread/simulation/surface_vtu.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <ostream>
 #include <sstream>
@@ -85,7 +86,9 @@ namespace tanktread
     write_array(out, "Float64", "Points", 3, positions.data(), positions.size());
     out << "</Points>\n";
     write_cells(out, faces);
-    out << "<PointData>\n";
+    const bool has_normals =
+      std::any_of(point_fields.begin(), point_fields.end(), [](const auto &field) { return field.first == "normals" && field.second.cols() == 3; });
+    out << (has_normals ? "<PointData Normals=\"normals\">\n" : "<PointData>\n");
     for (const auto &[name, values] : point_fields)
       {
         const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> by_points = values;

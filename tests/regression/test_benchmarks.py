@@ -21,8 +21,12 @@ python_packages.need("numpy", "matplotlib")
 
 import numpy as np  # noqa: E402
 
+import plot_style  # noqa: E402, F401
 import run_files  # noqa: E402
 import run_scenes  # noqa: E402
+
+sys.path.insert(0, str(ROOT / "benchmarks/le_2010"))
+import snapshots  # noqa: E402
 
 SCRIPTS = ["plot_run.py", "plot_study.py", "interface_study.py", "box_study.py", "le_2010/run.py", "flows/run.py", "work_precision/run.py"]
 
@@ -240,6 +244,41 @@ class Cores(unittest.TestCase):
         self.assertEqual(division(40, 8, ranks=2), (4, 2))
         self.assertEqual(division(40, 8, jobs=1), (1, 4))
         self.assertEqual(division(0, 1), (1, 1))
+
+
+class Snapshots(unittest.TestCase):
+    """An octahedron: the directions of its vertices are its normals."""
+
+    def setUp(self):
+        points = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], dtype=float)
+        faces = np.array([[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]])
+        self.flat = {"points": points, "faces": faces, "velocity": points[:, [2, 1, 0]]}
+        self.smooth = {**self.flat, "normals": points}
+
+    def test_files_without_normals_have_those_of_their_faces(self):
+        shell = snapshots.with_normals(self.flat)
+        self.assertTrue(np.allclose(shell["points"].reshape(-1, 3, 3), self.flat["points"][self.flat["faces"]]))
+        self.assertTrue(np.allclose(shell["normals"].reshape(-1, 3, 3).mean(axis=1), self.flat["points"][self.flat["faces"]].sum(axis=1) / np.sqrt(3)))
+        self.assertIs(snapshots.with_normals(self.smooth), self.smooth)
+
+    def test_what_is_seen_is_the_side_towards_us(self):
+        right, up = snapshots.SCREEN
+        self.assertTrue(np.allclose([right @ right, up @ up, right @ up], [1, 1, 0]))
+        self.assertTrue(np.allclose(np.cross(right, up), snapshots.EYE))
+        for shell in (self.flat, self.smooth):
+            for vertex, fill in ((4, "black"), (5, "none")):  # above and below
+                axis = snapshots.plt.figure().add_subplot()
+                snapshots.draw_shell(axis, shell, vertex, 1)
+                triangles = axis.collections[0]._triangulation.triangles
+                points = snapshots.with_normals(shell)["points"]
+                self.assertTrue((points[triangles].sum(axis=1) @ snapshots.EYE > 0).all())
+                self.assertEqual(len(triangles), np.sum(self.flat["points"][self.flat["faces"]].sum(axis=1) @ snapshots.EYE > 0))
+                self.assertEqual(axis.lines[0].get_markerfacecolor(), fill)
+                snapshots.plt.close(axis.figure)
+
+    def test_light_follows_the_normals(self):
+        colors = snapshots.colors_of({**self.smooth, "velocity": np.zeros((6, 3))}, 1)[:, :3].sum(axis=1)
+        self.assertEqual(np.argmax(colors), np.argmax(self.smooth["points"] @ snapshots.direction(*snapshots.LAMP)))
 
 
 class Files(unittest.TestCase):

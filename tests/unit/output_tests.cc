@@ -142,6 +142,15 @@ TEST_F(Output, VtuHoldsPointsCellsAndFieldsBitForBit)
     }
 }
 
+TEST_F(Output, VtuMarksNormalsToShadeBy)
+{
+  const ControlPoints x = octahedron();
+  write_surface_vtu(path("with.vtu"), x, octahedron_faces, {{"velocity", x}, {"normals", x}});
+  write_surface_vtu(path("without.vtu"), x, octahedron_faces, {{"velocity", x}});
+  EXPECT_NE(content("with.vtu").find("<PointData Normals=\"normals\">"), std::string::npos);
+  EXPECT_NE(content("without.vtu").find("<PointData>"), std::string::npos);
+}
+
 TEST_F(Output, VtuRefusesWhatDoesNotFit)
 {
   const ControlPoints x = octahedron();

@@ -8,6 +8,7 @@
 #include <tanktread/simulation/motion.h>
 #include <tanktread/simulation/observables.h>
 #include <tanktread/simulation/surface_vtu.h>
+#include <tanktread/surface/limit_picture.h>
 
 #include <memory>
 #include <string>
@@ -24,8 +25,12 @@ namespace tanktread
   class Results
   {
   public:
-    /** The folder must exist. What cannot be written on the first rank throws OutputError on all. Collective, as are all members. */
-    Results(const std::string &folder, unsigned int n_capsules, MPI_Comm communicator);
+    /**
+     * The folder must exist. What cannot be written on the first rank throws OutputError on all. Collective, as are all members.
+     *
+     * @param topology control mesh of the capsules. @param surface_subdivisions of its faces in the files of the shells.
+     */
+    Results(const std::string &folder, const TriangleMesh &topology, unsigned int n_capsules, unsigned int surface_subdivisions, MPI_Comm communicator);
 
     void
     add_history(const StepObservables &step, const std::vector<CapsuleObservables> &capsules, const SuspensionObservables &suspension);
@@ -36,7 +41,7 @@ namespace tanktread
 
     /** The cuts of the shells with control points x alone. */
     void
-    add_contours(double time, const Capsule &capsule, const ShellFields &x);
+    add_contours(double time, const ShellFields &x);
 
     /**
      * summary.csv: lines "quantity,value", the first of them `outcome` with the word "done", "steady" or "failed"; with several capsules the quantities of each
@@ -53,13 +58,14 @@ namespace tanktread
     void
     write_shells(const std::string &file, const Capsule &capsule, const State &state, const ShellFields &velocities) const;
     void
-    write_contours(double time, const TriangleMesh &topology, const ShellFields &x);
+    write_contours(double time, const ShellFields &x);
 
     std::string                             folder_;
     MPI_Comm                                communicator_;
     unsigned int                            n_capsules_, n_fields_ = 0;
     std::vector<std::unique_ptr<CsvWriter>> histories_, contours_; // on the first rank only
     std::unique_ptr<CsvWriter>              suspension_;           // likewise
+    std::unique_ptr<LimitPicture>           surface_picture_, contour_picture_;
     PvdFile                                 shell_series_, fluid_series_;
   };
 } // namespace tanktread

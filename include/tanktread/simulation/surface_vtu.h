@@ -19,7 +19,8 @@ namespace tanktread
    *
    * @param positions    NP x 3, unit a: points on the limit surface (not the control points, which do not lie on it).
    * @param faces        vertex indices in 0 ... NP - 1, outward oriented.
-   * @param point_fields name and values, NP x 1 (scalar) or NP x 3 (vector). Names are written as they are: no <, & or quotes.
+   * @param point_fields name and values, NP x 1 (scalar) or NP x 3 (vector). Names are written as they are: no <, & or quotes. A vector
+   * field "normals" is marked as the one to shade the surface by.
    * @throws std::invalid_argument for fields of another shape or indices out of range, OutputError if the file cannot be written.
    */
   void
