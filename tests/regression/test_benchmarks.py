@@ -28,7 +28,7 @@ import run_scenes  # noqa: E402
 sys.path.insert(0, str(ROOT / "benchmarks/le_2010"))
 import snapshots  # noqa: E402
 
-SCRIPTS = ["plot_run.py", "plot_study.py", "interface_study.py", "box_study.py", "le_2010/run.py", "flows/run.py", "work_precision/run.py"]
+SCRIPTS = ["plot_run.py", "plot_study.py", "interface_study.py", "box_study.py", "economy.py", "le_2010/run.py", "flows/run.py", "work_precision/run.py"]
 
 
 class Repository(unittest.TestCase):
@@ -213,6 +213,48 @@ class WorkPrecision(Repository):
         shutil.rmtree(self.root / "output")
         self.run_biconcave("--draw")
         self.assertIn("## Cheapest", (self.root / "output/work_precision/work_precision.md").read_text())
+
+
+class Economy(Repository):
+    def measure(self, *words):
+        return self.passes("economy.py", "--program", str(self.program), "--cells", "16", "--savings", "lambda,limit", *words)
+
+    def report(self):
+        return (self.root / "output/economy/economy.md").read_text()
+
+    def test_runs_in_turn_and_their_differences(self):
+        said = self.measure("--repeat", "2")
+        self.assertEqual([line.split(":")[0] for line in said.splitlines()[:-1]],
+                         ["lambda_16/with", "lambda_16/without"] * 2 + ["limit_16/with", "limit_16/without"] * 2)
+        report = self.report()
+        row = next(line.strip("| ").split(" | ") for line in report.splitlines() if line.startswith("| one viscosity"))
+        self.assertEqual(row[6:8], ["0", "0"])  # the stand-in always gives the same
+        self.assertIn("| 40 / 40 |", report)
+        limit = next(line.strip("| ").split(" | ") for line in report.splitlines() if line.startswith("| stop when the limit"))
+        self.assertEqual(limit[6], "–")  # it knows no limit
+        parameters = [(self.root / f"output/economy/lambda_16/{kind}/economy.json").read_text() for kind in ("with", "without")]
+        self.assertIn('"Scene/Viscosity ratio": "1"', parameters[0])
+        self.assertIn('"Scene/Viscosity ratio": "1.000000001"', parameters[1])
+
+    def test_what_is_there_is_not_measured_again(self):
+        self.measure()
+        self.assertEqual(len(self.measure().splitlines()), 1)
+        self.assertEqual(len(self.measure("--repeat", "2").splitlines()), 5)
+        prm = self.root / "benchmarks/economy.prm"
+        prm.write_text(prm.read_text().replace("= 0.2", "= 0.1"))
+        self.assertEqual(len(self.measure().splitlines()), 5)
+
+    def test_doc_changes_where_it_was_asked_to(self):
+        before = self.doc()
+        self.measure()
+        self.assertEqual(self.doc(), before)
+        self.measure("--report", "--update-doc")
+        self.assertEqual(self.doc(), {**before, "doc/economy.md": self.report().encode()})
+
+    def test_a_run_that_fails_is_reported(self):
+        self.program.write_text("#!/bin/sh\nexit 2\n")
+        self.assertIn("exit code 2", self.measure())
+        self.assertIn("| exit code 2 | exit code 2 | – |", self.report())
 
 
 class Packages(Repository):
