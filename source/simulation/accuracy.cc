@@ -64,9 +64,10 @@ namespace tanktread
 
 
     double
-    control_mesh_error(const int level)
+    control_mesh_error(const Parameters &parameters, const int level)
     {
-      return control_mesh_at_level_1 * std::pow(control_mesh_gain, 1 - level);
+      const double membrane_alone = parameters.scene.bending_modulus() == 0. ? 1.5 : 1.; // nothing keeps its curvature smooth
+      return membrane_alone * control_mesh_at_level_1 * std::pow(control_mesh_gain, 1 - level);
     }
 
 
@@ -170,7 +171,7 @@ namespace tanktread
     if (parameters.capsule.shape != Shape::file)
       {
         int level = 1;
-        while (control_mesh_error(level) > of_control_mesh * target && level < 5)
+        while (control_mesh_error(parameters, level) > of_control_mesh * target && level < 5)
           ++level;
         choose("Shell mesh", "Level", std::to_string(level));
       }
@@ -201,7 +202,7 @@ namespace tanktread
         result.push_back({"cells", cells_error(parameters, h), std::pow(2., 2.3 / order)});
       }
     if (parameters.capsule.shape != Shape::file)
-      result.push_back({"control mesh", control_mesh_error(parameters.shell_mesh.level), 1.2});
+      result.push_back({"control mesh", control_mesh_error(parameters, parameters.shell_mesh.level), 1.2});
     if (parameters.time.tolerance > 0. && parameters.time.scheme == TimeScheme::bdf3)
       result.push_back({"steps", steps_factor * memory_of_shape(parameters) * parameters.time.tolerance / D, std::pow(2., 1. / 3.)});
     result.push_back({"Newton tolerance", newton_factor * memory_of_shape(parameters) * parameters.solver.newton_tolerance / D, 1.05});
