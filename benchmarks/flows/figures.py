@@ -7,7 +7,7 @@ import matplotlib.pyplot as plt
 import scenes
 from run_files import without_jumps
 
-COLORS = {"quick": "#E69F00", "wide": "#56B4E9", "full": "#0072B2"}
+COLORS = {"quick": "#E69F00", "wide": "#56B4E9", "full": "#0072B2", "unbounded": "#D55E00", "unbounded-full": "#009E73"}
 REFERENCE = {"color": "#222222", "linestyle": "--", "linewidth": 1.1, "zorder": 5, "label": "boundary integral"}
 LABELS = {"z_moved": "$(z - z_0)/a$", "u_z": r"$u_z$", "D": "$D$", "theta": r"$\theta/\pi$", "L": "$L/a$", "B": "$B/a$", "W": "$W/a$"}
 SHAPE, WAY = ("D", "L", "B", "W"), ("z_moved", "u_z", "D", "theta")

@@ -14,12 +14,12 @@ INTRODUCTION = """# Several capsules, extension, parabola, wall
 
 Scenes beside one capsule in shear, against the boundary-integral solutions of `benchmarks/reference`. This page is written by
 
-    benchmarks/flows/run.py [--quick | --wide | --full] --update-doc
+    benchmarks/flows/run.py [--quick | --wide | --full | --unbounded | --unbounded-full] --update-doc
 
 from the results that it finds; the parameter files are in `benchmarks/flows`. {resolutions}.
 Neo-Hookean spheres with prestress, viscosity ratio 1, no bending; lengths in a, times in 1/rate. In brackets the difference from the reference at the same
-time, by cubics through the rows of both; the reference has no box, so that the box is part of it: quick and wide differ by the box alone. Dashed in the
-figures: the reference.
+time, by cubics through the rows of both; the reference has no box, so that the box is part of it: quick and wide differ by the box alone, between faces; unbounded is quick, and unbounded-full is
+full, in a small box in unbounded liquid (`Scene/Boundary = unbounded`). Dashed in the figures: the reference.
 """
 
 
@@ -61,6 +61,11 @@ def heading(name):
     return f"## {scenes.SCENES[name].title}\n"
 
 
+def spent(record):
+    """Time of a run; of earlier ones the seconds that went by alone."""
+    return f"{record['seconds']:.0f} s" + (f" ({record['cpu_seconds']:.0f} CPU s)" if "cpu_seconds" in record else "")
+
+
 def section(name, results, figures_folder):
     """Results of the scene at all resolutions."""
     scene, shown = scenes.SCENES[name], [result for result in results if result.capsules]
@@ -73,7 +78,7 @@ def section(name, results, figures_folder):
         text.append(pair_table([result for result in shown if len(result.capsules) > 1], wanted))
     text.append(values_table(name, shown, wanted))
     records = [(result, result.record) for result in results if result.record]
-    runs = [f"{result.resolution} {record['seconds']:.0f} s on {record['ranks']} rank(s), {result.state()}" for result, record in records]
+    runs = [f"{result.resolution} {spent(record)} on {record['ranks']} rank(s), {result.state()}" for result, record in records]
     errors = next(value for key, value in notes.items() if key.startswith("estimated errors"))
     text.append(f"Runs: {'; '.join(runs)}. Estimated errors of the reference: {errors}.\n")
     return "\n".join(text)

@@ -4,7 +4,7 @@
 """Compute a pair that passes in shear, planar and uniaxial extension, plane Poiseuille flow and a capsule above a wall, and compare them with independent
 solutions.
 
-    run.py [wall ...] [--quick | --wide | --full] [--jobs N] [--ranks N] [--resume] [--draw] [--update-doc]
+    run.py [wall ...] [--quick | --wide | --full | --unbounded | --unbounded-full] [--jobs N] [--ranks N] [--resume] [--draw] [--update-doc]
 
 Without names all scenes are computed. The parameter files are beside this script, results go to output/flows/<resolution>/<scene>, figures to
 output/flows/figures, the report to output/flows/report.md. A run that fails or that the program refuses does not stop the others; the report says so. The
@@ -43,6 +43,9 @@ def arguments():
     unknown = [name for name in args.names if name not in scenes.SCENES]
     if unknown:
         parser.error(f"no such scene: {', '.join(unknown)}; there are {', '.join(scenes.SCENES)}")
+    without = [name for name in args.names if not scenes.is_at(name, args.resolution)]
+    if without:
+        parser.error(f"--{args.resolution}: {', '.join(without)} has walls, which are not in unbounded liquid")
     run_scenes.check_arguments(parser, args)
     return args
 
@@ -70,7 +73,7 @@ def draw(name, results, folder):
 def main():
     args = arguments()
     if not args.draw:
-        names = args.names or list(scenes.SCENES)
+        names = args.names or [name for name in scenes.SCENES if scenes.is_at(name, args.resolution)]
         run_scenes.compute(args, [(scenes.run_of(name), args.resolution, scenes.settings(name, args.resolution)) for name in names])
     results = {name: [scenes.Result(name, resolution) for resolution in scenes.RESOLUTIONS] for name in scenes.SCENES}
     tried = [name for name in scenes.SCENES if any(result.record for result in results[name])]

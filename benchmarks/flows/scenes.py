@@ -15,8 +15,10 @@ import run_scenes  # noqa: E402
 
 OUTPUT = run_scenes.ROOT / "output/flows"
 
-# How fine and in which box: (finest cell, level of the control mesh, side of the box). From coarse to fine; quick and wide differ by the box alone.
-RESOLUTIONS = {"quick": (0.3125, 2, 20), "wide": (0.3125, 2, 40), "full": (0.15625, 3, 40)}
+# How fine and in which box: (finest cell, level of the control mesh, side of the box). From coarse to fine; quick and wide differ by the box alone, and the last two
+# from quick and full by their boxes in unbounded liquid, for scenes without walls.
+RESOLUTIONS = {"quick": (0.3125, 2, 20), "wide": (0.3125, 2, 40), "full": (0.15625, 3, 40), "unbounded": (0.3125, 2, 7.5), "unbounded-full": (0.15625, 3, 7.5)}
+UNBOUNDED_SIDES = {"crossing_pair": "30, 7.5, 7.5", "parabola": "7.5, 7.5, 10"}  # room for a pair that ends 20a apart, for a capsule off the middle
 
 
 @dataclasses.dataclass(frozen=True)
@@ -32,8 +34,8 @@ class Scene:
 SCENES = {
     "crossing_pair": Scene(
         "A pair passing in shear",
-        "Ca = 0.45, prestress 0.05, centres at (∓4, 0, ±0.25). Numbers are those of the first capsule. The box is a cube of 40a, 80a or 160a: "
-        "at the end the capsules are 20a apart.",
+        "Ca = 0.45, prestress 0.05, centres at (∓4, 0, ±0.25). Numbers are those of the first capsule. The box is a cube of 40a, 80a or 160a, "
+        "in unbounded liquid 30a × 7.5a × 7.5a: at the end the capsules are 20a apart.",
         "crossing_pair_Ca0.45_prestress0.05.csv", ("x", "z", "D", "theta"), (5, 15, 20, 32)),
     "planar_extension": Scene(
         "Planar extension", "(x, 0, −z) on all faces of the box, Ca = 0.1, prestress 0.05; at the end the shape is steady.",
@@ -42,7 +44,8 @@ SCENES = {
         "Uniaxial extension", "(x, −y/2, −z/2) on all faces of the box, Ca = 0.1, prestress 0.05; at the end the shape is steady.",
         "uniaxial_extension_Ca0.1_prestress0.05.csv", ("D", "L", "B", "W"), (1, 8)),
     "parabola": Scene(
-        "Plane Poiseuille flow", "(H/2)(1 − z²/H²) along x without walls, H = 5, Ca = 1, prestress 0.05, from z₀ = 1.5; the box is wider than the parabola.",
+        "Plane Poiseuille flow", "(H/2)(1 − z²/H²) along x without walls, H = 5, Ca = 1, prestress 0.05, from z₀ = 1.5; the box between faces is wider than the parabola, that in "
+        "unbounded liquid 7.5a × 7.5a × 10a.",
         "plane_poiseuille_Ca1_H5_z1.5_prestress0.05.csv", ("z_moved", "u_x", "u_z", "D", "theta"), (5, 10, 30)),
     "wall": Scene(
         "Above a wall", "Shear, Ca = 0.3, prestress 0.05, centre at a distance of 2 from the lower wall at first; u_x is seen from that wall. "
@@ -51,11 +54,18 @@ SCENES = {
 }
 
 
+def is_at(name, resolution):
+    """Whether the scene has the resolution: walls are not in unbounded liquid."""
+    return name != "wall" or not resolution.startswith("unbounded")
+
+
 def settings(name, resolution):
     """What a resolution adds to the parameter file."""
     cell, level, side = RESOLUTIONS[resolution]
     result = {"Fluid mesh/Finest cell": f"{cell:g}", "Shell mesh/Level": str(level), "Scene/Box side": str(side)}
-    if name == "crossing_pair":  # small differences of height add up for 16/rate before the pair meets, so it takes larger boxes
+    if resolution.startswith("unbounded"):
+        result |= {"Scene/Boundary": "unbounded", "Scene/Box side": UNBOUNDED_SIDES.get(name, str(side)), "Fluid mesh/Coarsest cell": "1.25"}
+    elif name == "crossing_pair":  # small differences of height add up for 16/rate before the pair meets, so it takes larger boxes
         side = {"quick": 40, "wide": 80, "full": 160}[resolution]
         result["Scene/Box side"] = f"{side}"
         result["Fluid mesh/Coarsest cell"] = f"{side / 16:g}"
@@ -69,7 +79,8 @@ def settings(name, resolution):
 
 def described(resolution):
     cell, level, side = RESOLUTIONS[resolution]
-    return f"cells of {cell:g} a at the shell, {10 * 4 ** level + 2} control points, a box of {side} a"
+    liquid = " in unbounded liquid" if resolution.startswith("unbounded") else ""
+    return f"cells of {cell:g} a at the shell, {10 * 4 ** level + 2} control points, a box of {side} a{liquid}"
 
 
 def run_of(name):

@@ -4,6 +4,7 @@
 """What a user's call changes and what it leaves, what is said where Python lacks a package, and the figures of runs."""
 
 import csv
+import json
 import os
 import pathlib
 import shutil
@@ -157,6 +158,17 @@ class Flows(Repository):
         report = self.root / "doc/flows.md"
         self.assertIn("## Planar extension", report.read_text())
         self.assertEqual(report.read_text().split("## Above a wall")[1], text.split("## Above a wall")[1])
+
+    def test_scenes_without_walls_in_unbounded_liquid(self):
+        self.run_scenes("--unbounded")
+        folder = self.root / "output/flows/unbounded"
+        self.assertEqual({run.name for run in folder.iterdir()}, {"crossing_pair", "planar_extension", "uniaxial_extension", "parabola"})
+        for run, side in (("planar_extension", "7.5"), ("crossing_pair", "30, 7.5, 7.5")):
+            settings = json.loads((folder / run / "run.json").read_text())["settings"]
+            self.assertEqual((settings["Scene/Boundary"], settings["Scene/Box side"]), ("unbounded", side))
+        code, said = self.call("flows/run.py", "wall", "--unbounded", python=(sys.executable,))
+        self.assertEqual(code, 2)
+        self.assertIn("wall has walls", said)
 
     def test_what_is_left_of_a_failed_run_is_reported(self):
         self.program.write_text(self.program.read_text().replace("exec", 'echo "tanktread: FAILED early"; exit 2\nexec'))
