@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: what kind of motion a run shows, its periods and frequencies.
 
+#include <tanktread/simulation/energy_balance.h>
 #include <tanktread/simulation/motion.h>
 
 #include <algorithm>
@@ -202,6 +203,14 @@ namespace tanktread
     s.D_last          = samples.back().D;
     s.theta_last      = samples.back().theta;
     s.limits          = motion_limits(samples);
+    std::vector<double> times, energies, powers;
+    for (const MotionSample &sample : samples)
+      {
+        times.push_back(sample.time);
+        energies.push_back(sample.stored_energy);
+        powers.push_back(sample.power);
+      }
+    s.energy_defect = energy_defect(times, energies, powers);
     return s;
   }
 
@@ -242,6 +251,8 @@ namespace tanktread
       text << "\n  Tank-treading: " << s.tank_treading_frequency << " turns per unit of time (period " << 1. / s.tank_treading_frequency << ").";
     if (!std::isnan(s.tumbling_frequency))
       text << "\n  Tumbling: " << s.tumbling_frequency << " turns per unit of time (period " << 1. / s.tumbling_frequency << ").";
+    if (!std::isnan(s.energy_defect))
+      text << "\n  Balance of energy: the steps have left over " << std::setprecision(2) << s.energy_defect << " of the shell's work.";
     return text.str();
   }
 } // namespace tanktread

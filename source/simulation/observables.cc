@@ -43,6 +43,7 @@ namespace tanktread
         o.volume_error  = o.volume / capsule.volume() - 1.;
         o.area          = surface_area(capsule.surface(), of_capsule.x);
         o.energy        = scene.elasticity().energy(of_capsule.x);
+        o.power         = of_capsule.force.cwiseProduct(velocities[c]).sum();
         o.pressure_jump = of_capsule.pressure_jump;
         o.stress        = particle_stress(of_capsule.x, of_capsule.force); // with one viscosity the forces are all of it
         if (ratio != 1.)

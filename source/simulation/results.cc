@@ -117,6 +117,7 @@ namespace tanktread
           result.emplace_back(quantity + "_limit", limit.value);
           result.emplace_back(quantity + "_limit_error", limit.error);
         }
+      result.emplace_back("energy_defect", s.energy_defect);
       return result;
     }
   } // namespace

@@ -204,6 +204,8 @@ namespace tanktread
   void
   Simulation::remember(std::vector<CapsuleObservables> &capsules)
   {
+    // The moments alone are not the derivative of an energy.
+    const bool has_energy = parameters_.shell.form == BendingForm::variational || parameters_.scene.bending_modulus() == 0.;
     for (std::size_t c = 0; c < capsules.size(); ++c)
       {
         CapsuleObservables  &o = capsules[c];
@@ -226,7 +228,9 @@ namespace tanktread
                                  o.ellipsoid.W,
                                  o.rheology.intrinsic_viscosity,
                                  o.rheology.normal_difference_1,
-                                 o.rheology.normal_difference_2});
+                                 o.rheology.normal_difference_2,
+                                 has_energy ? o.energy.membrane + o.energy.bending : MotionSample::unknown,
+                                 o.power});
       }
   }
 

@@ -27,6 +27,7 @@ namespace tanktread
     double delta;                                 // alpha - theta, from its start
     double L = unknown, B = unknown, W = unknown; // semi-axes
     double intrinsic_viscosity = unknown, N1 = unknown, N2 = unknown;
+    double stored_energy = unknown, power = unknown; // of the shell, and what it gives to the liquid
   };
 
   enum class MotionMode
@@ -54,6 +55,7 @@ namespace tanktread
     double       theta_minimum = MotionSample::unknown, theta_maximum = MotionSample::unknown; // between `from` and `end`
     double       D_last = MotionSample::unknown, theta_last = MotionSample::unknown;
     MotionLimits limits;
+    double       energy_defect = MotionSample::unknown; // what the steps have left over, relative to the shell's work
   };
 
   /**

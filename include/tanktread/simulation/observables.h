@@ -38,6 +38,7 @@ namespace tanktread
     double           theta_over_pi = 0.;                      // inclination in units of pi; not a number while the section is round
     double           volume = 0., volume_error = 0., area = 0.;
     Shell::Energy    energy{};
+    double           power            = 0.; // F . U, what the shell gives to the liquid
     double           pressure_jump    = 0.;
     double           theta_continuous = 0., alpha = 0., delta = 0.; // see PhaseAngles
     Eigen::Matrix3d  stress = Eigen::Matrix3d::Zero();              // see particle_stress()
