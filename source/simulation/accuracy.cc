@@ -20,9 +20,11 @@ namespace tanktread
     // Parts of the target that each cause may have.
     constexpr double of_cells = 0.45, of_steps = 0.3, of_newton = 0.2, of_stop = 0.5, of_control_mesh = 0.55;
 
+    constexpr double hardly_larger = 1.1; // than wanted: a cell for which there is 60 % of the target
+
     // The model: doc/accuracy.md, "The dial". Errors are relative to the largest D; h in a.
     constexpr double cells_factor = 0.045, cells_order = 3.;                   // one viscosity
-    constexpr double contrast_factor = 0.07, contrast_order = 2.;             // two
+    constexpr double contrast_factor = 0.07, contrast_order = 2.;              // two
     constexpr double control_mesh_at_level_1 = 0.011, control_mesh_gain = 20.; // a level
     constexpr double steps_factor  = 1.2;                                      // error of D over Time/Tolerance
     constexpr double newton_factor = 0.1;                                      // over Solver/Newton tolerance
@@ -93,27 +95,71 @@ namespace tanktread
     }
 
 
-    /** Side of a box around one capsule in unbounded liquid: three coarsest cells, which are a power of two times h. */
-    double
-    side_of_box(const Parameters &parameters, const double h)
+    /** A box and its cells. */
+    struct Cells
+    {
+      double side, coarsest, finest;
+    };
+
+
+    /** The smallest box in unbounded liquid that leaves one capsule enough room: three to five coarsest cells, which are a power of two times h. */
+    Cells
+    unbounded_box(const Parameters &parameters, const double h)
     {
       const double target  = parameters.accuracy.target_error;
       const double radii   = target >= 0.005 ? 5.5 : target >= 0.0005 ? 6.5 : 7.5;
       const double D       = expected_deformation(parameters);
       const double stretch = std::sqrt((1. + D) / (1. - std::min(D, 0.7)));
-      double       side    = 3. * h;
-      while (side < radii * std::max({1., 0.8 * initial_radius(parameters), 0.7 * stretch}))
-        side *= 2.;
-      return side;
+      const double needed  = radii * std::max({1., 0.8 * initial_radius(parameters), 0.7 * stretch});
+      Cells        best{1e300, 0., h};
+      for (const double n : {3., 4., 5.})
+        {
+          double coarsest = h;
+          while (n * coarsest < needed)
+            coarsest *= 2.;
+          if (n * coarsest < best.side)
+            best = {n * coarsest, coarsest, h};
+        }
+      return best;
+    }
+
+
+    /** Finest cell of the octree that `coarsest` makes in the box of `parameters`: the largest one that is hardly larger than h. */
+    double
+    octree_cell(const Parameters &parameters, const double coarsest, const double h)
+    {
+      const Box         box      = parameters.scene.box();
+      const BoxDivision division = divide(box, coarsest);
+      double            size     = box.side[0] / (division.n_rung_0[0] << division.coarsest_level);
+      while (size > hardly_larger * h)
+        size /= 2.;
+      return size;
+    }
+
+
+    /** Cells for a box that is given: coarsest ones of 1.8 a to 3.6 a, unless they are given too, whose octree has a size near h. */
+    Cells
+    given_box(const Parameters &parameters, const double h, const bool coarsest_is_set)
+    {
+      const double side = parameters.scene.box().side[0];
+      Cells        best{side, parameters.fluid_mesh.coarsest_cell, octree_cell(parameters, parameters.fluid_mesh.coarsest_cell, h)};
+      if (coarsest_is_set)
+        return best;
+      for (double n = std::ceil(side / 3.6); n <= side / 1.8; ++n)
+        if (const double finest = octree_cell(parameters, side / n, h); finest > best.finest)
+          best = {side, side / n, finest};
+      return best;
     }
 
 
     bool
     may_be_unbounded(const Parameters &parameters, const ParameterSource &source)
     {
-      for (const char *const name : {"Boundary", "Box side", "Box faces", "Channel half width"})
+      for (const char *const name : {"Box side", "Box faces", "Channel half width"})
         if (source.is_set(std::string("Scene/") + name))
           return false;
+      if (source.is_set("Scene/Boundary") && parameters.scene.boundary == Boundary::faces)
+        return false;
       return parameters.scene.reynolds_number == 0. && parameters.scene.flow != Flow::plane_poiseuille && parameters.placement.centres.size() == 1;
     }
   } // namespace
@@ -160,14 +206,21 @@ namespace tanktread
     };
 
     const double h = wanted_cell(parameters);
-    if (may_be_unbounded(parameters, source) && !source.is_set("Fluid mesh/Coarsest cell") && !source.is_set("Fluid mesh/Finest cell"))
+    if (!source.is_set("Fluid mesh/Finest cell"))
       {
-        const double side = side_of_box(parameters, h);
-        choose("Scene", "Boundary", "unbounded");
-        choose("Scene", "Box side", number(side));
-        choose("Fluid mesh", "Coarsest cell", number(side / 3.));
+        const bool coarsest_is_set = source.is_set("Fluid mesh/Coarsest cell");
+        Cells      cells;
+        if (may_be_unbounded(parameters, source) && !coarsest_is_set)
+          {
+            cells = unbounded_box(parameters, h);
+            choose("Scene", "Boundary", "unbounded");
+            choose("Scene", "Box side", number(cells.side));
+          }
+        else
+          cells = given_box(parameters, h, coarsest_is_set);
+        choose("Fluid mesh", "Coarsest cell", number(cells.coarsest));
+        choose("Fluid mesh", "Finest cell", number(1.0001 * cells.finest));
       }
-    choose("Fluid mesh", "Finest cell", number(1.0001 * h));
     if (parameters.capsule.shape != Shape::file)
       {
         int level = 1;

@@ -33,13 +33,16 @@ namespace tanktread
         }
     }
 
+    /** What the dial looks at. */
     bool
-    shape_is_sound(const CapsuleShapeParameters &capsule)
+    scene_is_sound(const Parameters &parameters)
     {
       try
         {
-          capsule.check();
-          check_mesh_file(capsule);
+          parameters.scene.check();
+          parameters.capsule.check();
+          check_mesh_file(parameters.capsule);
+          parameters.fluid_mesh.check(parameters.scene.box());
           return true;
         }
       catch (const InputError &)
@@ -163,7 +166,7 @@ namespace tanktread
     const ParameterSource source = read_parameter_file(prm, file, overrides);
     parameters.file              = file;
     complete_file_names(prm, parameters);
-    if (shape_is_sound(parameters.capsule)) // otherwise check() says what is wrong with it
+    if (scene_is_sound(parameters)) // otherwise check() says what is wrong with it
       parameters.choices = accuracy_choices(parameters, source);
     for (const Choice &choice : parameters.choices)
       set(prm, choice.section, choice.name, choice.value);
