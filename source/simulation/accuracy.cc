@@ -3,6 +3,8 @@
 
 #include <deal.II/base/parameter_handler.h>
 
+#include <Eigen/Eigenvalues>
+
 #include <tanktread/base/parameter_file.h>
 #include <tanktread/simulation/accuracy.h>
 #include <tanktread/simulation/parameters.h>
@@ -65,11 +67,27 @@ namespace tanktread
     }
 
 
+    /** How long the initial shape is along its principal axes, in a, the shortest first. */
+    Eigen::Vector3d
+    initial_lengths(const Parameters &parameters)
+    {
+      const FittedShape     shape  = make_capsule(parameters.capsule, 2);
+      const ControlPoints   x      = shape.control_points.rowwise() - shape.control_points.colwise().mean();
+      const Eigen::Matrix3d axes   = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(Eigen::Matrix3d(x.transpose() * x)).eigenvectors();
+      const ControlPoints   along  = x * axes;
+      Eigen::Vector3d       result = (along.colwise().maxCoeff() - along.colwise().minCoeff()).transpose();
+      std::sort(result.data(), result.data() + 3);
+      return result;
+    }
+
+
     double
     control_mesh_error(const Parameters &parameters, const int level)
     {
-      const double membrane_alone = parameters.scene.bending_modulus() == 0. ? 1.5 : 1.; // nothing keeps its curvature smooth
-      return membrane_alone * control_mesh_at_level_1 * std::pow(control_mesh_gain, 1 - level);
+      const Eigen::Vector3d length         = initial_lengths(parameters);
+      const double          rim            = std::max(1., std::pow(length[2] / length[0] / 1.5, 2.)); // flat shapes are curved more sharply
+      const double          membrane_alone = parameters.scene.bending_modulus() == 0. ? 1.5 : 1.;     // nothing keeps its curvature smooth
+      return rim * membrane_alone * control_mesh_at_level_1 * std::pow(control_mesh_gain, 1 - level);
     }
 
 
@@ -182,9 +200,8 @@ namespace tanktread
   double
   expected_deformation(const Parameters &parameters)
   {
-    const FittedShape     shape   = make_capsule(parameters.capsule, 2);
-    const Eigen::Vector3d extent  = (shape.control_points.colwise().maxCoeff() - shape.control_points.colwise().minCoeff()).transpose();
-    const double          initial = (extent.maxCoeff() - extent.minCoeff()) / (extent.maxCoeff() + extent.minCoeff());
+    const Eigen::Vector3d length  = initial_lengths(parameters);
+    const double          initial = (length[2] - length[0]) / (length[2] + length[0]);
     if (parameters.scene.flow == Flow::quiescent)
       return std::max(initial, 0.02);
     // Neo-Hookean sphere, flat reference, Ca = 3 G: D = (25/12) Ca / (1 + 33 khat).

@@ -164,6 +164,15 @@ TEST(Accuracy, WhatWasUsedCanBeReadAgain)
 }
 
 
+TEST(Accuracy, FlatShapesHaveFinerControlMeshes)
+{
+  std::vector<std::string> settings = {target("3e-3"), "Capsule/Inclination=0.25"};
+  const unsigned int       round    = read(settings).shell_mesh.level;
+  settings.push_back("Capsule/Shape=biconcave");
+  EXPECT_EQ(read(settings).shell_mesh.level, round + 1);
+}
+
+
 TEST(Accuracy, TheLogSaysWhatIsChosenAndWhatIsExpected)
 {
   const std::string text = accuracy_text(read({target("1e-3")}));
@@ -194,6 +203,9 @@ TEST(Accuracy, ExpectedDeformationIsThatOfSmallCapillaryNumbers)
   // D = (25/12) Ca / (1 + 33 khat), Ca = 3 G, and never more than 1.
   EXPECT_NEAR(expected_deformation(read({"Scene/Shear number G=0.004"})), 6.25 * 0.004, 0.03 * 6.25 * 0.004);
   EXPECT_LT(expected_deformation(read({"Scene/Shear number G=100"})), 1.);
+  // That of the initial shape, however it is inclined.
+  for (const std::string inclination : {"0", "0.25"})
+    EXPECT_NEAR(expected_deformation(read({"Capsule/Shape=oblate", "Capsule/Aspect ratio=0.5", "Capsule/Inclination=" + inclination})), 1. / 3., 0.01);
   EXPECT_NEAR(expected_deformation(read({"Capsule/Shape=ellipsoid", "Capsule/Axes=3,2,1", "Scene/Flow=quiescent", "Scene/Reduced bending modulus=1"})),
               0.5,
               0.01);
