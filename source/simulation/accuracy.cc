@@ -5,6 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <tanktread/base/exceptions.h>
 #include <tanktread/base/parameter_file.h>
 #include <tanktread/simulation/accuracy.h>
 #include <tanktread/simulation/parameters.h>
@@ -13,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <iomanip>
+#include <limits>
 #include <sstream>
 
 namespace tanktread
@@ -164,9 +166,29 @@ namespace tanktread
       if (coarsest_is_set)
         return best;
       for (double n = std::ceil(side / 3.6); n <= side / 1.8; ++n)
-        if (const double finest = octree_cell(parameters, side / n, h); finest > best.finest)
-          best = {side, side / n, finest};
+        try
+          {
+            FluidMeshParameters mesh = parameters.fluid_mesh;
+            mesh.coarsest_cell       = side / n;
+            mesh.finest_cell         = std::min(mesh.finest_cell, mesh.coarsest_cell);
+            mesh.check(parameters.scene.box());
+            if (const double finest = octree_cell(parameters, side / n, h); finest > best.finest)
+              best = {side, side / n, finest};
+          }
+        catch (const InputError &)
+          {
+            // cubes of that size do not fill the box
+          }
       return best;
+    }
+
+
+    /** One capsule that nothing carries away from the origin. */
+    bool
+    stays_in_the_middle(const Parameters &parameters)
+    {
+      const std::vector<double> &frame = parameters.scene.frame_velocity;
+      return parameters.placement.centres.size() == 1 && parameters.placement.positions()[0].norm() < 1e-12 && frame == std::vector<double>(3, 0.);
     }
 
 
@@ -178,7 +200,18 @@ namespace tanktread
           return false;
       if (source.is_set("Scene/Boundary") && parameters.scene.boundary == Boundary::faces)
         return false;
-      return parameters.scene.reynolds_number == 0. && parameters.scene.flow != Flow::plane_poiseuille && parameters.placement.centres.size() == 1;
+      const SceneParameters &scene = parameters.scene;
+      return scene.reynolds_number == 0. && scene.flow != Flow::plane_poiseuille && stays_in_the_middle(parameters);
+    }
+
+
+    /** Local error of the scheme per error of D, over that of BDF3, as measured for BDF2; infinite where the dial knows nothing of the steps. */
+    double
+    factor_of_scheme(const Parameters &parameters)
+    {
+      if (parameters.solver.coupling == TimeCoupling::explicit_euler || order(parameters.time.scheme) == 1)
+        return std::numeric_limits<double>::infinity();
+      return order(parameters.time.scheme) == 2 ? 4. : 1.;
     }
   } // namespace
 
@@ -194,6 +227,18 @@ namespace tanktread
       "says which, and what each is expected to add to the error. 0: defaults.",
       dealii::Patterns::Double(0., 0.1));
     prm.leave_subsection();
+  }
+
+
+  void
+  AccuracyParameters::check() const
+  {
+    if (target_error > 0. && target_error < 1e-6)
+      {
+        std::ostringstream message;
+        message << "Accuracy/Target error is " << target_error << "; allowed: 0, or 1e-6 to 0.1";
+        throw InputError(message.str());
+      }
   }
 
 
@@ -222,21 +267,21 @@ namespace tanktread
         result.push_back({section, name, value});
     };
 
-    const double h = wanted_cell(parameters);
-    if (!source.is_set("Fluid mesh/Finest cell"))
+    const bool   finest_is_set = source.is_set("Fluid mesh/Finest cell"), coarsest_is_set = source.is_set("Fluid mesh/Coarsest cell");
+    const double h = finest_is_set ? parameters.fluid_mesh.finest_cell : wanted_cell(parameters);
+    if (may_be_unbounded(parameters, source) && !coarsest_is_set)
       {
-        const bool coarsest_is_set = source.is_set("Fluid mesh/Coarsest cell");
-        Cells      cells;
-        if (may_be_unbounded(parameters, source) && !coarsest_is_set)
-          {
-            cells = unbounded_box(parameters, h);
-            choose("Scene", "Boundary", "unbounded");
-            choose("Scene", "Box side", number(cells.side));
-          }
-        else
-          cells = given_box(parameters, h, coarsest_is_set);
+        const Cells cells = unbounded_box(parameters, h);
+        choose("Scene", "Boundary", "unbounded");
+        choose("Scene", "Box side", number(cells.side));
         choose("Fluid mesh", "Coarsest cell", number(cells.coarsest));
-        choose("Fluid mesh", "Finest cell", number(1.0001 * cells.finest));
+        choose("Fluid mesh", "Finest cell", number(1.0001 * h));
+      }
+    else if (!finest_is_set)
+      {
+        const Cells cells = given_box(parameters, h, coarsest_is_set);
+        choose("Fluid mesh", "Coarsest cell", number(cells.coarsest));
+        choose("Fluid mesh", "Finest cell", number(std::min(1.0001 * cells.finest, cells.coarsest)));
       }
     if (parameters.capsule.shape != Shape::file)
       {
@@ -247,12 +292,12 @@ namespace tanktread
       }
 
     const double D = expected_deformation(parameters);
-    if (!source.is_set("Time/Step"))
+    if (!source.is_set("Time/Step") && std::isfinite(factor_of_scheme(parameters)))
       {
         choose("Time", "Step", "1");
-        choose("Time", "Tolerance", number(of_steps * target * D / (steps_factor * memory_of_shape(parameters))));
+        choose("Time", "Tolerance", number(of_steps * target * D / (steps_factor * factor_of_scheme(parameters) * memory_of_shape(parameters))));
       }
-    if (!source.is_set("Time/Steady tolerance"))
+    if (!source.is_set("Time/Steady tolerance") && parameters.scene.oscillation_frequency == 0. && stays_in_the_middle(parameters))
       choose("Time", "Limit tolerance", number(of_stop * target));
     const double newton = std::clamp(of_newton * target * D / (newton_factor * memory_of_shape(parameters)), 1e-7, 1e-2);
     choose("Solver", "Newton tolerance", number(newton));
@@ -273,8 +318,10 @@ namespace tanktread
       }
     if (parameters.capsule.shape != Shape::file)
       result.push_back({"control mesh", control_mesh_error(parameters, parameters.shell_mesh.level), 1.2});
-    if (parameters.time.tolerance > 0. && parameters.time.scheme == TimeScheme::bdf3)
-      result.push_back({"steps", steps_factor * memory_of_shape(parameters) * parameters.time.tolerance / D, std::pow(2., 1. / 3.)});
+    if (parameters.time.tolerance > 0. && std::isfinite(factor_of_scheme(parameters)))
+      result.push_back({"steps",
+                        steps_factor * factor_of_scheme(parameters) * memory_of_shape(parameters) * parameters.time.tolerance / D,
+                        std::pow(2., 1. / order(parameters.time.scheme))});
     result.push_back({"Newton tolerance", newton_factor * memory_of_shape(parameters) * parameters.solver.newton_tolerance / D, 1.05});
     if (parameters.scene.boundary == Boundary::faces)
       {

@@ -39,6 +39,7 @@ namespace tanktread
     {
       try
         {
+          parameters.accuracy.check();
           parameters.scene.check();
           parameters.capsule.check();
           check_mesh_file(parameters.capsule);
@@ -136,6 +137,7 @@ namespace tanktread
           errors += (errors.empty() ? "" : "\n") + source.locate(error.what());
         }
     };
+    collect([&] { accuracy.check(); });
     collect([&] { scene.check(); });
     collect([&] { capsule.check(); });
     collect([&] { check_mesh_file(capsule); });
@@ -173,6 +175,20 @@ namespace tanktread
     parameters.check(source);
     parameters.used = parameters_as_prm(prm);
     return parameters;
+  }
+
+  Parameters
+  with_settings(const Parameters &parameters, const std::vector<std::string> &settings)
+  {
+    Parameters               result;
+    dealii::ParameterHandler prm;
+    result.add_parameters(prm);
+    const ParameterSource source = read_parameter_text(prm, parameters.used, parameters.file, settings);
+    result.file                  = parameters.file;
+    result.choices               = parameters.choices;
+    result.check(source);
+    result.used = parameters_as_prm(prm);
+    return result;
   }
 
   std::string

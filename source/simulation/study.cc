@@ -79,7 +79,10 @@ namespace tanktread
           {
             throw InputError("The companion " + run.name() + " of section Study cannot be made:\n" + error.what());
           }
-        overrides_.push_back(of_run);
+        if (run.coarser.count(Cause::target) == 0)
+          parameters_.back().choices = parameters.choices;
+        else if (parameters_.back().choices.empty())
+          throw InputError("Study/Vary names target; allowed where something is left to it: all that Accuracy/Target error chooses is set");
       }
   }
 
@@ -119,17 +122,16 @@ namespace tanktread
   {
     double end = 0.;
     on_first_rank(communicator_, [&] { end = end_of_run(parameters_[0].output.directory).value_or(0.); });
-    end = dealii::Utilities::MPI::broadcast(communicator_, end, 0);
-    if (end >= parameters_[0].scene.end_time)
-      return;
-    std::ostringstream time;
-    time << std::setprecision(15) << end;
-    for (std::size_t i = 1; i < parameters_.size(); ++i)
+    end                               = dealii::Utilities::MPI::broadcast(communicator_, end, 0);
+    std::vector<std::string> settings = {"Time/Steady tolerance=0", "Time/Limit tolerance=0"};
+    if (end < parameters_[0].scene.end_time)
       {
-        for (const std::string &setting : {"Scene/End time=" + time.str(), std::string("Time/Steady tolerance=0"), std::string("Time/Limit tolerance=0")})
-          overrides_[i].push_back(setting);
-        parameters_[i] = read_parameters(parameters_[0].file, overrides_[i]);
+        std::ostringstream time;
+        time << "Scene/End time=" << std::setprecision(15) << end;
+        settings.push_back(time.str());
       }
+    for (std::size_t i = 1; i < parameters_.size(); ++i)
+      parameters_[i] = with_settings(parameters_[i], settings);
   }
 
 

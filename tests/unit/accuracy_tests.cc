@@ -137,7 +137,8 @@ TEST(Accuracy, WhatIsSetStays)
   EXPECT_EQ(p.shell_mesh.level, 1u);
   EXPECT_EQ(p.time.step, 0.05);
   EXPECT_EQ(p.time.tolerance, 0.);
-  EXPECT_EQ(p.scene.boundary, Boundary::faces); // the box would have to fit the cells
+  EXPECT_EQ(p.scene.boundary, Boundary::unbounded);
+  EXPECT_NEAR(std::remainder(std::log2(p.fluid_mesh.coarsest_cell / 0.3), 1.), 0., 1e-6); // the box fits the cells
   for (const Choice &choice : p.choices)
     EXPECT_TRUE(choice.name != "Finest cell" && choice.name != "Level" && choice.name != "Step" && choice.name != "Tolerance") << choice.name;
   EXPECT_GT(error_of(p, "cells"), 1e-3); // what is set by hand is judged like what is chosen
@@ -147,6 +148,18 @@ TEST(Accuracy, WhatIsSetStays)
   EXPECT_NEAR(error_of(p, "box (against unbounded liquid)"), 1e-3, 1e-12);
   p = read({target("1e-3"), "Scene/Reynolds number=1"});
   EXPECT_EQ(p.scene.boundary, Boundary::faces);
+  p = read({target("1e-3"), "Capsule/Centres=0, 0, 1.5"});
+  EXPECT_EQ(p.scene.boundary, Boundary::faces);
+  EXPECT_EQ(p.time.limit_tolerance, 0.);
+  p = read({target("1e-3"), "Solver/Coupling=explicit"});
+  EXPECT_EQ(p.time.step, TimeParameters().step);
+  EXPECT_TRUE(std::isnan(error_of(p, "steps")));
+  p = read({target("1e-3"), "Time/Scheme=BDF2"});
+  EXPECT_NEAR(p.time.tolerance, 0.25 * read({target("1e-3")}).time.tolerance, 1e-9);
+  p = read({target("1e-2"), "Fluid mesh/Coarsest cell=0.4", "Scene/Box side=10"});
+  EXPECT_LE(p.fluid_mesh.finest_cell, 0.4);
+  EXPECT_NO_THROW(read({target("1e-3"), "Scene/Box side=20, 20, 6"}));
+  EXPECT_THROW(read({target("1e-9")}), InputError);
   p = read({target("1e-3"), "Time/Steady tolerance=1e-3"});
   EXPECT_EQ(p.time.limit_tolerance, 0.);
 }

@@ -25,6 +25,10 @@ namespace tanktread
     /** Declares section "Accuracy" in `prm`; parsing fills this object, which has to outlive `prm`. */
     void
     add_parameters(dealii::ParameterHandler &prm);
+
+    /** Throws InputError for targets that are out of reach. */
+    void
+    check() const;
   };
 
   /** A parameter with the value that it gets. */

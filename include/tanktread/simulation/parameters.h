@@ -73,6 +73,10 @@ namespace tanktread
   Parameters
   read_parameters(const std::string &file, const std::vector<std::string> &overrides = {});
 
+  /** The same with some of them changed ("Section/Parameter=value"); reads no parameter file. @throws InputError as read_parameters(). */
+  Parameters
+  with_settings(const Parameters &parameters, const std::vector<std::string> &settings);
+
   /** All parameters with their defaults, as a parameter file or as Markdown tables. */
   std::string
   default_parameters(bool as_markdown);

@@ -69,7 +69,7 @@ namespace tanktread
     double
     length_factor(double local_error) const;
 
-    /** First length: Time/Step, or shorter where the tolerance asks for it: the first two steps have no error estimate, so unit acceleration is assumed. */
+    /** First length: Time/Step, or shorter where the tolerance asks for it: the first steps have no error estimate, so unit acceleration is assumed. */
     double
     first_length() const;
 

@@ -37,18 +37,17 @@ namespace tanktread
     /** Does a run or finds its result. Returns why it has failed, or nothing. */
     std::string
     do_run(std::size_t i);
-    /** Numbers are compared at equal times: where the run has stopped by itself, its companions end then. */
+    /** Numbers are compared at equal times: companions end where the run has, and do not stop by themselves. */
     void
     end_companions_with_the_run();
     void
     write_table(const StudyTable &table);
 
-    MPI_Comm                              communicator_;
-    Log                                   log_;
-    StudyPlan                             plan_;
-    std::vector<Parameters>               parameters_; // of each run
-    std::vector<std::vector<std::string>> overrides_;  // that they were read with
-    double                                own_seconds_ = 0., companion_seconds_ = 0.;
+    MPI_Comm                communicator_;
+    Log                     log_;
+    StudyPlan               plan_;
+    std::vector<Parameters> parameters_; // of each run
+    double                  own_seconds_ = 0., companion_seconds_ = 0.;
   };
 } // namespace tanktread
 
