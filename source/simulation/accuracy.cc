@@ -86,10 +86,9 @@ namespace tanktread
     double
     control_mesh_error(const Parameters &parameters, const int level)
     {
-      const Eigen::Vector3d length         = initial_lengths(parameters);
-      const double          rim            = std::max(1., std::pow(length[2] / length[0] / 1.5, 2.)); // flat shapes are curved more sharply
-      const double          membrane_alone = parameters.scene.bending_modulus() == 0. ? 1.5 : 1.;     // nothing keeps its curvature smooth
-      return rim * membrane_alone * control_mesh_at_level_1 * std::pow(control_mesh_gain, 1 - level);
+      const Eigen::Vector3d length = initial_lengths(parameters);
+      const double          rim    = std::max(1., std::pow(length[2] / length[0] / 1.5, 2.)); // flat shapes are curved more sharply
+      return rim * control_mesh_at_level_1 * std::pow(control_mesh_gain, 1 - level);
     }
 
 
@@ -285,8 +284,10 @@ namespace tanktread
       }
     if (parameters.capsule.shape != Shape::file)
       {
-        int level = 1;
-        while (control_mesh_error(parameters, level) > of_control_mesh * target && level < 5)
+        // Where a membrane without bending stiffness is compressed it wrinkles, on a finer control mesh the more.
+        const int finest = parameters.scene.bending_modulus() == 0. ? 2 : 5;
+        int       level  = 1;
+        while (control_mesh_error(parameters, level) > of_control_mesh * target && level < finest)
           ++level;
         choose("Shell mesh", "Level", std::to_string(level));
       }

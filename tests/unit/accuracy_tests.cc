@@ -36,8 +36,9 @@ namespace
     return std::nan("");
   }
 
-  const std::vector<std::string> disk = {"Capsule/Shape=biconcave", "Scene/Viscosity ratio=4"}, stiff = {"Scene/Shear number G=0.005"},
-                                 soft = {"Scene/Shear number G=0.2", "Scene/Reduced bending modulus=0.04"};
+  const std::vector<std::string> disk  = {"Capsule/Shape=biconcave", "Scene/Viscosity ratio=4", "Scene/Reduced bending modulus=0.01"},
+                                 stiff = {"Scene/Shear number G=0.005", "Scene/Reduced bending modulus=0.01"},
+                                 soft  = {"Scene/Shear number G=0.2", "Scene/Reduced bending modulus=0.04"};
 } // namespace
 
 
@@ -179,10 +180,13 @@ TEST(Accuracy, WhatWasUsedCanBeReadAgain)
 
 TEST(Accuracy, FlatShapesHaveFinerControlMeshes)
 {
-  std::vector<std::string> settings = {target("3e-3"), "Capsule/Inclination=0.25"};
+  std::vector<std::string> settings = {target("3e-3"), "Capsule/Inclination=0.25", "Scene/Reduced bending modulus=0.01"};
   const unsigned int       round    = read(settings).shell_mesh.level;
   settings.push_back("Capsule/Shape=biconcave");
   EXPECT_EQ(read(settings).shell_mesh.level, round + 1);
+  // Without bending a finer one would wrinkle.
+  EXPECT_EQ(read({target("1e-4"), "Scene/Reduced bending modulus=0.01"}).shell_mesh.level, 3u);
+  EXPECT_EQ(read({target("1e-4")}).shell_mesh.level, 2u);
 }
 
 
