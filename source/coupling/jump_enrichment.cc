@@ -210,6 +210,9 @@ namespace tanktread
                   G(c, d) += f[v][c] * slopes_[i][v][d];
             const Vector4        &normal = averages_.normal(i);
             const Eigen::Vector3d n(normal[0], normal[1], normal[2]);
+            // Along the shell derivatives are smooth across it. That of the normal velocity along the normal follows from div U = 0; its own value suffers from the
+            // jump of the second derivative, which u_h + psi does not have.
+            G -= G.trace() * n * n.transpose();
             const Eigen::Vector3d traction = (1. - contrast_.ratio) * averages_.area(i) * (G * n + G.transpose() * n);
             std::copy_n(traction.data(), 3, &at_points[3 * r]);
           }

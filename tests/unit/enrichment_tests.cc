@@ -340,6 +340,44 @@ TEST(ViscosityContrast, StressOfTheUndisturbedFlowIsInBalance)
 }
 
 
+TEST(ViscosityContrast, SphereWithoutForcesIsStrainedEvenly)
+{
+  // A sphere of liquid without forces at its surface, in simple shear: the strain rate inside is 5/(2 lambda + 3) times that of the flow, and the sphere turns with it.
+  Eigen::Matrix3d strain = Eigen::Matrix3d::Zero();
+  strain(0, 2) = strain(2, 0) = 0.5;
+  for (const double ratio : {0.2, 5., 20.})
+    {
+      std::vector<double> error; // of the normal velocity, in the pattern of the strain rate
+      for (const unsigned int cells : {32, 64})
+        {
+          oracle::GivenForces scene(make_capsule({}, 3),
+                                    Interface::enriched,
+                                    10.,
+                                    {10. / cells, 2.5, 1.5},
+                                    {Eigen::RowVector3d(0.013, 0.031, -0.022)},
+                                    {ratio, simple_shear()},
+                                    true);
+          const ControlPoints none    = ControlPoints::Zero(scene.shells[0]->x().rows(), 3);
+          const ControlPoints U       = scene.coupling_surface.S() * scene.flow({none}, 1e-8, 4).velocity[0];
+          double              product = 0., square = 0.;
+          for (Eigen::Index q = 0; q < U.rows(); ++q)
+            {
+              const Eigen::RowVector3d n        = (scene.X().row(q) - scene.centre()).normalized();
+              const double             strained = n * strain * n.transpose();
+              product += scene.weights()[q] * U.row(q).dot(n) * strained;
+              square += scene.weights()[q] * strained * strained;
+            }
+          const double factor = 5. / (2. * ratio + 3.);
+          error.push_back(std::abs(product / square - (factor - 1.)) / factor);
+          if (is_root())
+            std::cout << "ratio " << ratio << ", h = 10a/" << cells << ": error of the strain rate " << error.back() << std::endl;
+        }
+      EXPECT_LT(error[0], ratio == 20. ? 0.008 : ratio == 5. ? 0.002 : 0.0004);
+      EXPECT_LT(error[1], ratio == 20. ? 0.004 : ratio == 5. ? 0.001 : 0.0003);
+    }
+}
+
+
 TEST(ViscosityContrast, IterationsOverTheRatio)
 {
   for (const unsigned int cells : {32, 64})
