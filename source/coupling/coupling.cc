@@ -136,6 +136,10 @@ namespace tanktread
     ExtendedForces forces;
     extend_whole(g, forces);
     interpolation_->gradients(fields, moments_);
+    interpolation_->laplacians(fields, values_);
+    const dealii::Tensor<1, 3> undisturbed_laplacian = contrast_.flow.laplacian();
+    for (std::size_t i = 0; i < values_.size(); ++i)
+      values_[i] += undisturbed_laplacian[i % 3];
     for (const ShellTransfer &transfer : transfers_)
       {
         const VelocityGradients undisturbed = transfer.gradients(contrast_.flow, transfer.shell());
@@ -151,7 +155,7 @@ namespace tanktread
             jumps_->extend(forces);
             jumps_->complete(forces);
           }
-        jumps_->update_viscous_forces(moments_, forces);
+        jumps_->update_viscous_forces(moments_, values_, forces);
       }
   }
 

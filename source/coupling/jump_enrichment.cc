@@ -77,10 +77,34 @@ namespace tanktread
   {
     averages_.move(shell, points, range, first);
     psi_.assign(averages_.n_points(), {});
-    slopes_.clear();
-    if (contrast_.ratio != 1.)
-      slopes_.resize(averages_.n_points());
     find_cut_cells(SurfaceDistance(space_.mesh, shell.patches()));
+    mean_gradients_.clear();
+    if (contrast_.ratio != 1.)
+      set_mean_gradients(shell.patches(), points, first);
+  }
+
+
+  void
+  JumpEnrichment::set_mean_gradients(const std::vector<QuadraticPatch> &patches, const PointInterpolation &points, const unsigned int first)
+  {
+    static const NodeDistances   uncut{}; // a cell with no node on the other side has no psi
+    std::vector<const CutCell *> cut_cell(averages_.groups().size(), nullptr);
+    for (const CutCell &cut : cut_cells_)
+      if (cut.group != VertexAverages::no_points)
+        cut_cell[cut.group] = &cut;
+    mean_gradients_.reserve(averages_.n_points());
+    for (unsigned int k = 0; k < averages_.groups().size(); ++k)
+      {
+        const VertexAverages::Group &group = averages_.groups()[k];
+        const NodeDistances         &nodes = cut_cell[k] != nullptr ? cut_cell[k]->nodes : uncut;
+        const NodeAmplitudes         q     = node_amplitudes(nodes, contrast_.ratio);
+        for (unsigned int i = group.begin; i < group.end; ++i)
+          mean_gradients_.emplace_back(nodes,
+                                       q,
+                                       averages_.unit_position(i),
+                                       space_.velocity->cell_sizes()[group.cell],
+                                       patches[points.local_points()[averages_.point(i)] - first]);
+      }
   }
 
 
@@ -177,11 +201,7 @@ namespace tanktread
       return;
     const VertexAverages::Group &group = averages_.groups()[cut.group];
     for (unsigned int i = group.begin; i < group.end; ++i)
-      {
-        psi_[i] = psi_outside(cut.nodes, q, averages_.unit_position(i));
-        if (!slopes_.empty())
-          slopes_[i] = mean_slopes(cut.nodes, q, averages_.unit_position(i), space_.velocity->cell_sizes()[cut.cell]);
-      }
+      psi_[i] = psi_outside(cut.nodes, q, averages_.unit_position(i));
   }
 
 
@@ -193,31 +213,45 @@ namespace tanktread
   }
 
 
+  template <typename Mean>
   void
-  JumpEnrichment::viscous_forces(const std::vector<double> &gradients, const VertexArray &forces, VertexArray &g) const
+  JumpEnrichment::extend_viscous_forces(const std::vector<double> &gradients, const VertexArray &forces, const Mean &mean, VertexArray &g) const
   {
     std::vector<double> at_points(gradients.size() / 3, 0.);
     for (const VertexAverages::Group &group : averages_.groups())
       {
-        const VertexForces f = averages_.at_cell(forces, group.cell);
+        const VertexForces F = averages_.at_cell(forces, group.cell);
         for (unsigned int i = group.begin; i < group.end; ++i)
           {
-            const std::size_t r = averages_.point(i);
-            Eigen::Matrix3d   G = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(&gradients[9 * r]);
-            for (unsigned int v = 0; v < 8; ++v)
-              for (unsigned int c = 0; c < 3; ++c)
-                for (unsigned int d = 0; d < 3; ++d)
-                  G(c, d) += f[v][c] * slopes_[i][v][d];
+            const std::size_t     r      = averages_.point(i);
+            const Eigen::Matrix3d G      = mean(Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(&gradients[9 * r]), i, r, F);
             const Vector4        &normal = averages_.normal(i);
             const Eigen::Vector3d n(normal[0], normal[1], normal[2]);
-            // Along the shell derivatives are smooth across it. That of the normal velocity along the normal follows from div U = 0; its own value suffers from the
-            // jump of the second derivative, which u_h + psi does not have.
-            G -= G.trace() * n * n.transpose();
             const Eigen::Vector3d traction = (1. - contrast_.ratio) * averages_.area(i) * (G * n + G.transpose() * n);
             std::copy_n(traction.data(), 3, &at_points[3 * r]);
           }
       }
     averages_.extend(at_points, g);
+  }
+
+
+  void
+  JumpEnrichment::viscous_forces(const std::vector<double> &gradients, const VertexArray &forces, VertexArray &g) const
+  {
+    const auto mean = [&](const Eigen::Matrix3d &G, const unsigned int i, std::size_t, const VertexForces &F) {
+      return mean_gradients_[i].without_second_jump(G, F);
+    };
+    extend_viscous_forces(gradients, forces, mean, g);
+  }
+
+
+  void
+  JumpEnrichment::update_viscous_forces(const std::vector<double> &gradients, const std::vector<double> &laplacians, const VertexArray &forces)
+  {
+    const auto mean = [&](const Eigen::Matrix3d &G, const unsigned int i, const std::size_t r, const VertexForces &F) {
+      return mean_gradients_[i](G, Eigen::Vector3d(&laplacians[3 * r]), F, contrast_.ratio);
+    };
+    extend_viscous_forces(gradients, forces, mean, viscous_forces_);
   }
 
 

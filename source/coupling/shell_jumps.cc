@@ -106,10 +106,10 @@ namespace tanktread
 
 
   void
-  ShellJumps::update_viscous_forces(const std::vector<double> &gradients, const ExtendedForces &forces)
+  ShellJumps::update_viscous_forces(const std::vector<double> &gradients, const std::vector<double> &laplacians, const ExtendedForces &forces)
   {
     for (std::size_t c = 0; c < shells_.size(); ++c)
-      shells_[c].update_viscous_forces(gradients, forces.at_vertices[c]);
+      shells_[c].update_viscous_forces(gradients, laplacians, forces.at_vertices[c]);
   }
 
 

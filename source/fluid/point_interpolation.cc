@@ -10,6 +10,7 @@
 #include <tanktread/fluid/quadratic_element.h>
 
 #include <array>
+#include <cmath>
 #include <string>
 
 namespace tanktread
@@ -85,6 +86,19 @@ namespace tanktread
           gradient[3 * c + d] = derivatives[d][c];
       if (value != nullptr)
         result.store(value);
+    }
+
+
+    /** Of the velocities of a cell of size one. */
+    Vector4
+    laplacian(const CellValues &u, const Shapes &s)
+    {
+      const std::array<double, 3> &x = s.value[0], &y = s.value[1], &z = s.value[2], &second = quadratic_curvatures;
+      Vector4                      result;
+      for (unsigned int k = 0; k < 3; ++k)
+        for (unsigned int j = 0; j < 3; ++j)
+          result += (y[j] * z[k]) * combine(second, u[3 * k + j]) + (second[j] * z[k] + y[j] * second[k]) * combine(x, u[3 * k + j]);
+      return result;
     }
 
 
@@ -272,6 +286,18 @@ namespace tanktread
   {
     gradients.resize(9 * local_points_.size());
     for_points(velocity, [&](const unsigned int r, const CellValues &u, const Shapes &shapes) { evaluate_gradient(u, shapes, nullptr, &gradients[9 * r]); });
+  }
+
+
+  void
+  PointInterpolation::laplacians(const FluidBlockVector &velocity, std::vector<double> &laplacians) const
+  {
+    laplacians.resize(3 * local_points_.size());
+    for_groups(velocity, [&](const Group &group, const CellValues &u) {
+      const double inverse_square = std::pow(space_.velocity->cell_sizes()[group.cell], -2);
+      for (unsigned int i = group.begin; i < group.end; ++i)
+        (inverse_square * laplacian(u, Shapes(unit_[order_[i]], 1.))).store(&laplacians[3 * std::size_t(order_[i])]);
+    });
   }
 
 

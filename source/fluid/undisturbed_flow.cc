@@ -22,6 +22,16 @@ namespace tanktread
   }
 
 
+  dealii::Tensor<1, 3>
+  UndisturbedFlow::laplacian() const
+  {
+    dealii::Tensor<1, 3> result;
+    for (unsigned int c = 0; c < 3; ++c)
+      result[c] = trace(quadratic[c]);
+    return result;
+  }
+
+
   bool
   UndisturbedFlow::varies_along(const unsigned int d) const
   {

@@ -28,7 +28,7 @@ namespace tanktread
 
     // The model: doc/accuracy.md, "The dial". Errors are relative to the largest D; h in a.
     constexpr double cells_factor = 0.045, cells_order = 3.;                   // one viscosity
-    constexpr double contrast_factor = 0.03, contrast_order = 2.;              // two
+    constexpr double contrast_factor = 0.035, contrast_order = 2.;              // two
     constexpr double control_mesh_at_level_1 = 0.011, control_mesh_gain = 20.; // a level
     constexpr double steps_factor  = 1.2;                                      // error of D over Time/Tolerance
     constexpr double newton_factor = 0.1;                                      // over Solver/Newton tolerance

@@ -340,6 +340,38 @@ TEST(ViscosityContrast, StressOfTheUndisturbedFlowIsInBalance)
 }
 
 
+TEST(MeanGradient, LayersOfTwoLiquids)
+{
+  // A plane through the middle of a cell; U_z on both sides quadratic in x, with forces and pressures that keep it in balance, u_h its nodal interpolant.
+  const double  h = 0.3, lambda = 5., slope_in = 0.7, slope_out = 1.9, second_in = -2., second_out = 3.5;
+  NodeDistances nodes;
+  for (unsigned int a = 0; a < 27; ++a)
+    {
+      nodes.phi[a]    = (0.5 * (a % 3) - 0.5) * h;
+      nodes.inside[a] = nodes.phi[a] < 0.;
+    }
+  VertexForces F;
+  for (unsigned int v = 0; v < 8; ++v)
+    F[v] = Vector4(0., 0., -0.5 * (1. + lambda) * (slope_out - slope_in)) + Vector4(0., 0., 0., (second_out - lambda * second_in) * h * (v / 4));
+  const double    left = -0.5 * h * slope_in + h * h / 8. * second_in, right = 0.5 * h * slope_out + h * h / 8. * second_out; // of U_z - U_z(middle)
+  Eigen::Matrix3d of_u_h = Eigen::Matrix3d::Zero();
+  of_u_h(2, 0)           = (right - left) / h;
+  const Eigen::Vector3d laplacian(0., 0., 4. * (left + right) / (h * h));
+  QuadraticPatch        patch{};
+  patch.a_1 = Eigen::Vector3d::UnitY();
+  patch.a_2 = Eigen::Vector3d::UnitZ();
+  const MeanGradient    mean(nodes, node_amplitudes(nodes, lambda), {0.5, 0.3, 0.8}, h, patch);
+  const double          exact  = 0.5 * (slope_in + slope_out);
+  const Eigen::Matrix3d result = mean(of_u_h, laplacian, F, lambda), rough = mean.without_second_jump(of_u_h, F);
+  EXPECT_NEAR(result(2, 0), exact, 1e-12);
+  EXPECT_NEAR(rough(2, 0), exact + h / 8. * (second_out - second_in), 1e-12);
+  EXPECT_LT((result - result(2, 0) * Eigen::Vector3d::UnitZ() * Eigen::RowVector3d::UnitX()).norm(), 1e-12);
+  // The normal derivative of the normal velocity is what the others leave of the divergence.
+  of_u_h << 9., 0., 0., 0., 2., 0., 0., 0., -0.5;
+  EXPECT_NEAR(mean.without_second_jump(of_u_h, {})(0, 0), -1.5, 1e-12);
+}
+
+
 TEST(ViscosityContrast, SphereWithoutForcesIsStrainedEvenly)
 {
   // A sphere of liquid without forces at its surface, in simple shear: the strain rate inside is 5/(2 lambda + 3) times that of the flow, and the sphere turns with it.
@@ -358,7 +390,7 @@ TEST(ViscosityContrast, SphereWithoutForcesIsStrainedEvenly)
                                     {ratio, simple_shear()},
                                     true);
           const ControlPoints none    = ControlPoints::Zero(scene.shells[0]->x().rows(), 3);
-          const ControlPoints U       = scene.coupling_surface.S() * scene.flow({none}, 1e-8, 4).velocity[0];
+          const ControlPoints U       = scene.coupling_surface.S() * scene.flow({none}, 1e-8, ratio == 20. ? 12 : 4).velocity[0];
           double              product = 0., square = 0.;
           for (Eigen::Index q = 0; q < U.rows(); ++q)
             {
@@ -372,8 +404,8 @@ TEST(ViscosityContrast, SphereWithoutForcesIsStrainedEvenly)
           if (is_root())
             std::cout << "ratio " << ratio << ", h = 10a/" << cells << ": error of the strain rate " << error.back() << std::endl;
         }
-      EXPECT_LT(error[0], ratio == 20. ? 0.008 : ratio == 5. ? 0.002 : 0.0004);
-      EXPECT_LT(error[1], ratio == 20. ? 0.004 : ratio == 5. ? 0.001 : 0.0003);
+      EXPECT_LT(error[0], ratio == 20. ? 0.006 : ratio == 5. ? 0.0014 : 0.0003);
+      EXPECT_LT(error[1], ratio == 20. ? 0.002 : ratio == 5. ? 0.0006 : 0.0003);
     }
 }
 

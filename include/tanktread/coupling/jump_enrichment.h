@@ -5,6 +5,7 @@
 #define tanktread_coupling_jump_enrichment_h
 
 #include <tanktread/coupling/cut_cell_forms.h>
+#include <tanktread/coupling/mean_gradient.h>
 #include <tanktread/coupling/surface_distance.h>
 #include <tanktread/coupling/transposed_part.h>
 #include <tanktread/coupling/vertex_averages.h>
@@ -72,16 +73,14 @@ namespace tanktread
     /**
      * Makes g that of the flow with these gradients.
      *
-     * @param gradients of u_inf + u_h at the points of all shells on this rank, 9 numbers each, entry 3 c + d being du_c/dx_d. @param forces whole ones at the
+     * @param gradients of u_inf + u_h at the points of all shells on this rank, 9 numbers each, entry 3 c + d being du_c/dx_d. @param laplacians of the same, 3
+     * numbers each. @param forces whole ones at the
      * vertices. Collective.
      */
     void
-    update_viscous_forces(const std::vector<double> &gradients, const VertexArray &forces)
-    {
-      viscous_forces(gradients, forces, viscous_forces_);
-    }
+    update_viscous_forces(const std::vector<double> &gradients, const std::vector<double> &laplacians, const VertexArray &forces);
 
-    /** That map, which is linear. */
+    /** That map, which is linear, without what the jump of the second derivatives adds. */
     void
     viscous_forces(const std::vector<double> &gradients, const VertexArray &forces, VertexArray &g) const;
 
@@ -154,22 +153,30 @@ namespace tanktread
     refuse_own_image(unsigned int n_conflicts) const;
     void
     add_cut_cell(unsigned int cell, const dealii::Point<3> &centre, const NodeDistances &nodes);
-    /** psi and, with two viscosities, its slopes at the points of a cut cell. */
+    /** psi at the points of a cut cell. */
     void
     set_point_values(const CutCell &cut, const NodeAmplitudes &q);
+    /** At all points, with two viscosities. @param patches of the shell at its points, of which the first has the number `first`. */
+    void
+    set_mean_gradients(const std::vector<QuadraticPatch> &patches, const PointInterpolation &points, unsigned int first);
 
-    const TaylorHoodSpace              &space_;
-    const ViscosityContrast             contrast_;
-    CellLocator                         locator_;
-    VertexAverages                      averages_;
-    std::vector<CutCell>                cut_cells_;
-    std::vector<TransposedPart>         transposed_;   // of each cut cell; none with one viscosity
-    std::vector<unsigned int>           nearby_cells_; // whose nodes' distances are known
-    unsigned int                        n_coarse_cut_cells_ = 0;
-    VertexSides                         sides_;
-    std::vector<std::array<double, 8>>  psi_;            // psi_v at the points, in the order of the averages
-    std::vector<std::array<Vector4, 8>> slopes_;         // mean of grad psi_v on both sides, in that order; none with one viscosity
-    VertexArray                         viscous_forces_; // g_t and g_n; empty with one viscosity
+    /** g from the mean gradients, mean(G, i, r, F) being that at the place i, of the point r. */
+    template <typename Mean>
+    void
+    extend_viscous_forces(const std::vector<double> &gradients, const VertexArray &forces, const Mean &mean, VertexArray &g) const;
+
+    const TaylorHoodSpace             &space_;
+    const ViscosityContrast            contrast_;
+    CellLocator                        locator_;
+    VertexAverages                     averages_;
+    std::vector<CutCell>               cut_cells_;
+    std::vector<TransposedPart>        transposed_;   // of each cut cell; none with one viscosity
+    std::vector<unsigned int>          nearby_cells_; // whose nodes' distances are known
+    unsigned int                       n_coarse_cut_cells_ = 0;
+    VertexSides                        sides_;
+    std::vector<std::array<double, 8>> psi_;            // psi_v at the points, in the order of the averages
+    std::vector<MeanGradient>          mean_gradients_; // in that order; none with one viscosity
+    VertexArray                        viscous_forces_; // g_t and g_n; empty with one viscosity
   };
 } // namespace tanktread
 

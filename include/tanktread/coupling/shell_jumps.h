@@ -64,9 +64,9 @@ namespace tanktread
     void
     carry_pressure(unsigned int c, const ExtendedForces &forces, VertexSides &sides, FluidBlockVector &fields) const;
 
-    /** See JumpEnrichment; the gradients are those of u_inf + u_h at the points of all shells. Collective. */
+    /** See JumpEnrichment; gradients and Laplacians are those of u_inf + u_h at the points of all shells. Collective. */
     void
-    update_viscous_forces(const std::vector<double> &gradients, const ExtendedForces &forces);
+    update_viscous_forces(const std::vector<double> &gradients, const std::vector<double> &laplacians, const ExtendedForces &forces);
 
     /** Adds what these changes of gradients and forces will change of them, to first order. Collective. */
     void

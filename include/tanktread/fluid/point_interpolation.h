@@ -57,6 +57,10 @@ namespace tanktread
     void
     gradients(const FluidBlockVector &velocity, std::vector<double> &gradients) const;
 
+    /** laplacians[3 r + c] of u_c, from inside the cell. Collective. */
+    void
+    laplacians(const FluidBlockVector &velocity, std::vector<double> &laplacians) const;
+
     /** Both at once. */
     void
     values_and_gradients(const FluidBlockVector &velocity, std::vector<double> &values, std::vector<double> &gradients) const;

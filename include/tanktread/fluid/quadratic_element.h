@@ -24,6 +24,9 @@ namespace tanktread
     return {{4. * x - 3., 4. - 8. * x, 4. * x - 1.}};
   }
 
+  /** Their second derivatives. */
+  constexpr std::array<double, 3> quadratic_curvatures = {{4., -8., 4.}};
+
   /** Gauss's rule with n points on the unit interval, exact for polynomials of degree 2n - 1. */
   template <unsigned int n>
   struct UnitGauss

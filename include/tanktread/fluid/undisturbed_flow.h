@@ -27,6 +27,10 @@ namespace tanktread
     dealii::Tensor<2, 3>
     gradient(const dealii::Point<3> &x) const;
 
+    /** The same everywhere. */
+    dealii::Tensor<1, 3>
+    laplacian() const;
+
     /** Whether it changes along axis d, which it must not where the box is periodic. */
     bool
     varies_along(unsigned int d) const;
