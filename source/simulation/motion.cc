@@ -164,6 +164,23 @@ namespace tanktread
     }
 
 
+    /** What the balance of energy needs of the last `n` samples. */
+    struct EnergySeries
+    {
+      EnergySeries(const Samples &samples, const std::size_t n)
+      {
+        for (std::size_t i = samples.size() - n; i < samples.size(); ++i)
+          {
+            times.push_back(samples[i].time);
+            energies.push_back(samples[i].stored_energy);
+            powers.push_back(samples[i].power);
+          }
+      }
+
+      std::vector<double> times, energies, powers;
+    };
+
+
     MotionMode
     mode(const Samples &samples, const std::size_t first)
     {
@@ -203,15 +220,17 @@ namespace tanktread
     s.D_last          = samples.back().D;
     s.theta_last      = samples.back().theta;
     s.limits          = motion_limits(samples);
-    std::vector<double> times, energies, powers;
-    for (const MotionSample &sample : samples)
-      {
-        times.push_back(sample.time);
-        energies.push_back(sample.stored_energy);
-        powers.push_back(sample.power);
-      }
-    s.energy_defect = energy_defect(times, energies, powers);
+    const EnergySeries series(samples, samples.size());
+    s.energy_defect = energy_defect(series.times, series.energies, series.powers);
     return s;
+  }
+
+
+  double
+  last_energy_residual(const std::vector<MotionSample> &samples)
+  {
+    const EnergySeries series(samples, std::min<std::size_t>(samples.size(), 4));
+    return energy_residual(series.times, series.energies, series.powers);
   }
 
 

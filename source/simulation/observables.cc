@@ -120,7 +120,15 @@ namespace tanktread
             {"z", o.ellipsoid.centroid[2]},
             {"u_x", o.velocity[0]},
             {"u_y", o.velocity[1]},
-            {"u_z", o.velocity[2]}};
+            {"u_z", o.velocity[2]},
+            {"power", o.power},
+            {"energy_residual", o.energy_residual},
+            {"worst_triangle", o.shape.worst_triangle},
+            {"smallest_radius", o.shape.smallest_radius},
+            {"detail", o.shape.detail},
+            {"detail_ratio", o.shape.detail_ratio},
+            {"area_without_jumps", o.interface.without_jumps},
+            {"area_folded", o.interface.folded}};
   }
 
 

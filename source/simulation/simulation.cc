@@ -95,6 +95,7 @@ namespace tanktread
     , memory_(parameters.time)
     , stepper_(parameters.time, parameters.solver.coupling, parameters.scene.end_time, scene_, memory_.steps, log_)
     , state_(scene_.initial_state())
+    , mesh_quality_(scene_.capsule().topology())
   {
     memory_.next_fields = parameters.output.field_interval;
     stepper_.start(memory_.time, positions(state_));
@@ -231,6 +232,10 @@ namespace tanktread
                                  o.rheology.normal_difference_2,
                                  has_energy ? o.energy.membrane + o.energy.bending : MotionSample::unknown,
                                  o.power});
+        o.energy_residual = last_energy_residual(memory.motion);
+        o.shape           = mesh_quality_(x);
+        if (!scene_.coupling().jumps().are_none())
+          o.interface = interface_quality(scene_.coupling().jumps().shells()[c], communicator_);
       }
   }
 

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -190,6 +191,18 @@ namespace tanktread
   {
     return map_fundamental_forms(surface, x, [](const FundamentalForms &f) {
       return (f.kappa11 * f.kappa22 - f.kappa12 * f.kappa12) / (f.a11 * f.a22 - f.a12 * f.a12);
+    });
+  }
+
+
+  Eigen::VectorXd
+  largest_curvature(const SubdivisionSurface &surface, const ControlPoints &x)
+  {
+    return map_fundamental_forms(surface, x, [](const FundamentalForms &f) {
+      const double det   = f.a11 * f.a22 - f.a12 * f.a12;
+      const double mean  = 0.5 * (f.a22 * f.kappa11 - 2. * f.a12 * f.kappa12 + f.a11 * f.kappa22) / det;
+      const double gauss = (f.kappa11 * f.kappa22 - f.kappa12 * f.kappa12) / det;
+      return std::abs(mean) + std::sqrt(std::max(0., mean * mean - gauss)); // rounding makes the root's argument negative where both are the same
     });
   }
 

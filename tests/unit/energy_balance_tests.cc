@@ -82,3 +82,33 @@ TEST(EnergyDefect, NeedsFourLevelsAndNumbers)
   s.energies[3] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(std::isnan(s.defect()));
 }
+
+
+TEST(EnergyResidual, OfTheLastStepIsZeroWherePowersAreCubics)
+{
+  const Series s = quartic();
+  for (std::size_t n = 4; n <= s.times.size(); ++n)
+    {
+      const auto first = [n](const std::vector<double> &values) { return std::vector<double>(values.begin(), values.begin() + n); };
+      EXPECT_NEAR(energy_residual(first(s.times), first(s.energies), first(s.powers)), 0., 1e-13);
+    }
+}
+
+
+TEST(EnergyResidual, IsWhatIsMissingInThatStep)
+{
+  Series s = quartic();
+  s.energies.back() += 0.01;
+  EXPECT_NEAR(energy_residual(s.times, s.energies, s.powers), 0.01, 1e-13);
+  s.energies[s.energies.size() - 2] += 0.01;
+  EXPECT_NEAR(energy_residual(s.times, s.energies, s.powers), 0., 1e-13);
+}
+
+
+TEST(EnergyResidual, FirstStepsUseWhatLevelsThereAre)
+{
+  EXPECT_EQ(energy_residual({}, {}, {}), 0.);
+  EXPECT_EQ(energy_residual({0.}, {1.}, {2.}), 0.);
+  EXPECT_NEAR(energy_residual({0., 0.5}, {1., 0.3}, {1., 2.}), -0.7 + 0.75, 1e-15);                    // the trapezoidal rule
+  EXPECT_NEAR(energy_residual({0., 0.2, 1.}, {1., 0., 0.}, {0., 0.04, 1.}), (1. - 0.008) / 3., 1e-14); // the parabola t^2
+}

@@ -20,6 +20,14 @@ namespace tanktread
    */
   double
   energy_defect(const std::vector<double> &times, const std::vector<double> &energies, const std::vector<double> &powers);
+
+  /**
+   * Of the last step alone, E_n - E_{n-1} + integral of P from t_{n-1} to t_n: the integral is that of the polynomial through the last levels, four at most. Zero before there is a step.
+   *
+   * @param times ascending. @param energies, powers at these times.
+   */
+  double
+  energy_residual(const std::vector<double> &times, const std::vector<double> &energies, const std::vector<double> &powers);
 } // namespace tanktread
 
 #endif

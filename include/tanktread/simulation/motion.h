@@ -68,6 +68,10 @@ namespace tanktread
   MotionSummary
   motion_summary(const std::vector<MotionSample> &samples, bool ended_steady = false);
 
+  /** energy_residual() of the last samples. */
+  double
+  last_energy_residual(const std::vector<MotionSample> &samples);
+
   /** The word for a mode. */
   std::string
   word(MotionMode mode);

@@ -4,9 +4,11 @@
 #ifndef tanktread_simulation_observables_h
 #define tanktread_simulation_observables_h
 
+#include <tanktread/coupling/interface_quality.h>
 #include <tanktread/shell/shell.h>
 #include <tanktread/simulation/particle_stress.h>
 #include <tanktread/solver/scene.h>
+#include <tanktread/surface/mesh_quality.h>
 #include <tanktread/surface/surface_geometry.h>
 
 #include <limits>
@@ -43,6 +45,9 @@ namespace tanktread
     double           theta_continuous = 0., alpha = 0., delta = 0.; // see PhaseAngles
     Eigen::Matrix3d  stress = Eigen::Matrix3d::Zero();              // see particle_stress()
     Rheology         rheology{};
+    double           energy_residual = std::numeric_limits<double>::quiet_NaN(); // of the last step, see energy_residual()
+    ShapeQuality     shape;
+    InterfaceQuality interface; // zero with the plain interface
   };
 
   /** All capsules together: a row of suspension.csv. In unbounded liquid there are no means over its volume: they are not numbers. */

@@ -95,6 +95,7 @@ namespace tanktread
     RunMemory                memory_;
     TimeStepper              stepper_;
     State                    state_;
+    const MeshQuality        mesh_quality_;
     std::unique_ptr<Results> results_;
   };
 } // namespace tanktread

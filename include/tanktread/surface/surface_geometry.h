@@ -54,6 +54,10 @@ namespace tanktread
   Eigen::VectorXd
   gaussian_curvature(const SubdivisionSurface &surface, const ControlPoints &x);
 
+  /** The larger |kappa| of the two principal curvatures: 1/R on a sphere of radius R. Needs second derivatives. */
+  Eigen::VectorXd
+  largest_curvature(const SubdivisionSurface &surface, const ControlPoints &x);
+
   /** What inertia_ellipsoid() returns. */
   struct InertiaEllipsoid
   {
