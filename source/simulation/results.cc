@@ -240,7 +240,7 @@ namespace tanktread
 
 
   void
-  Results::write_summary(const std::string &outcome, const std::vector<MotionSummary> &capsules) const
+  Results::write_summary(const std::string &outcome, const std::vector<MotionSummary> &capsules, const Row &of_run) const
   {
     on_first_rank(communicator_, [&] {
       std::ostringstream file;
@@ -252,6 +252,8 @@ namespace tanktread
           for (const auto &[quantity, value] : summary_row(capsules[c]))
             file << quantity << number << ',' << value << '\n';
         }
+      for (const auto &[quantity, value] : of_run)
+        file << quantity << ',' << value << '\n';
       replace_file(folder_ + "/summary.csv", file.str());
     });
   }

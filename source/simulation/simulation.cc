@@ -95,7 +95,7 @@ namespace tanktread
     , memory_(parameters.time)
     , stepper_(parameters.time, parameters.solver.coupling, parameters.scene.end_time, scene_, memory_.steps, log_)
     , state_(scene_.initial_state())
-    , mesh_quality_(scene_.capsule().topology())
+    , resolution_(parameters, scene_, memory_.warnings, log_)
   {
     memory_.next_fields = parameters.output.field_interval;
     stepper_.start(memory_.time, positions(state_));
@@ -233,9 +233,6 @@ namespace tanktread
                                  has_energy ? o.energy.membrane + o.energy.bending : MotionSample::unknown,
                                  o.power});
         o.energy_residual = last_energy_residual(memory.motion);
-        o.shape           = mesh_quality_(x);
-        if (!scene_.coupling().jumps().are_none())
-          o.interface = interface_quality(scene_.coupling().jumps().shells()[c], communicator_);
       }
   }
 
@@ -268,6 +265,7 @@ namespace tanktread
     result.velocities = scene_.level().shell_velocity(state_);
     result.capsules   = observe(scene_, state_, result.velocities);
     remember(result.capsules);
+    resolution_.measure(state_, result.capsules);
     return result;
   }
 
@@ -293,6 +291,7 @@ namespace tanktread
     if (fields)
       results_->add_fields(memory_.time, scene_, state_, observed.velocities);
     log_step(o, capsules);
+    resolution_.check(state_, o, capsules);
   }
 
 
@@ -314,7 +313,8 @@ namespace tanktread
         summaries.push_back(motion_summary(memory_.capsules[c].motion, outcome == "steady"));
         log_.line("\n" + (memory_.capsules.size() > 1 ? "Capsule " + std::to_string(c + 1) + ". " : "") + motion_text(summaries.back()));
       }
-    results_->write_summary(outcome, summaries);
+    resolution_.finish();
+    results_->write_summary(outcome, summaries, worst_figures(memory_.warnings));
   }
 
 

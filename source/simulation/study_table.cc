@@ -111,7 +111,8 @@ namespace tanktread
         const double      value = std::strtod(text.c_str(), &end);
         if (name == "outcome")
           outcome = text;
-        else if (name.compare(0, 4, "from") != 0 && name.compare(0, 3, "end") != 0 && end != text.c_str() && *end == '\0' && std::isfinite(value))
+        else if (name.compare(0, 6, "worst_") != 0 && name.compare(0, 4, "from") != 0 && name.compare(0, 3, "end") != 0 && end != text.c_str() &&
+                 *end == '\0' && std::isfinite(value))
           result[name] = value;
       }
     if (outcome != "done" && outcome != "steady")

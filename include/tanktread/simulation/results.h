@@ -45,10 +45,10 @@ namespace tanktread
 
     /**
      * summary.csv: lines "quantity,value", the first of them `outcome` with the word "done", "steady" or "failed"; with several capsules the quantities of each
-     * have its number at their end.
+     * have its number at their end. @param of_run what there is once, whatever the number of capsules.
      */
     void
-    write_summary(const std::string &outcome, const std::vector<MotionSummary> &capsules) const;
+    write_summary(const std::string &outcome, const std::vector<MotionSummary> &capsules, const Row &of_run) const;
 
     /** The last good state of a run that failed: failed_shell.vtu. Returns the file's name. */
     std::string

@@ -6,6 +6,7 @@
 
 #include <tanktread/simulation/motion.h>
 #include <tanktread/simulation/phase_angles.h>
+#include <tanktread/simulation/resolution_warnings.h>
 #include <tanktread/simulation/step_history.h>
 #include <tanktread/solver/state.h>
 #include <tanktread/surface/surface_geometry.h>
@@ -57,6 +58,7 @@ namespace tanktread
     unsigned int               n_known_steps        = 0; // in which their limits were known to the tolerance, the last ones
     unsigned int               remeshing_iterations = 0; // linear ones, for the flow on a new mesh, to be counted in the next step
     double                     next_fields = 0., next_history = 0.;
+    WarningMemory              warnings;
     std::vector<CapsuleMemory> capsules; // from the first record on
   };
 } // namespace tanktread

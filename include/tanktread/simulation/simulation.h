@@ -6,6 +6,7 @@
 
 #include <tanktread/base/log.h>
 #include <tanktread/simulation/parameters.h>
+#include <tanktread/simulation/resolution_monitor.h>
 #include <tanktread/simulation/results.h>
 #include <tanktread/simulation/run_memory.h>
 #include <tanktread/simulation/time_stepper.h>
@@ -95,7 +96,7 @@ namespace tanktread
     RunMemory                memory_;
     TimeStepper              stepper_;
     State                    state_;
-    const MeshQuality        mesh_quality_;
+    ResolutionMonitor        resolution_;
     std::unique_ptr<Results> results_;
   };
 } // namespace tanktread

@@ -18,7 +18,7 @@ namespace tanktread
   std::optional<double>
   end_of_run(const std::string &folder);
 
-  /** The finite numbers of a summary.csv by their names, nothing if the file is missing or its run has failed. Names of times, "from" and "end", are left out. */
+  /** The finite numbers of a summary.csv by their names, nothing if the file is missing or its run has failed. Names of times, "from" and "end", and what begins with "worst_", the signs of bad resolution, are left out. */
   std::optional<std::map<std::string, double>>
   finished_summary(const std::string &folder);
 

@@ -69,6 +69,11 @@ namespace tanktread
     {
       return description_;
     }
+    MPI_Comm
+    communicator() const
+    {
+      return communicator_;
+    }
     const Capsule &
     capsule() const
     {

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: when a run has to say that its meshes or steps do not resolve what it computes.
+
+#ifndef tanktread_simulation_resolution_warnings_h
+#define tanktread_simulation_resolution_warnings_h
+
+#include <array>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tanktread
+{
+  /** What a run can warn of: one figure each. */
+  enum class Concern
+  {
+    triangle,      // worst_triangle() of the control mesh
+    curvature,     // smallest radius of curvature, in a
+    wrinkles,      // ShapeQuality::detail_ratio
+    without_jumps, // InterfaceQuality::without_jumps
+    folds,         // InterfaceQuality::folded
+    gap,           // between capsules, in a
+    wall,          // gap between a capsule and a face with prescribed velocity, in a
+    energy         // what the steps have left over, relative to the dissipation; see EnergyMemory
+  };
+
+  constexpr unsigned int n_concerns = 8;
+
+  /** One number for each Concern: of a step the worst of all capsules, not a number where it is not known. */
+  using ConcernFigures = std::array<double, n_concerns>;
+
+  /** What thresholds and advice depend on. */
+  struct ResolutionContext
+  {
+    double       finest_cell      = 0.;    // h, in a
+    double       initial_triangle = 1.;    // worst_triangle() of the initial shape: flat ones begin with long triangles
+    unsigned int control_points   = 0;     // of a capsule
+    bool         bends            = true;  // whether the shell resists bending
+    bool         moments_alone    = false; // Capsule/Bending form = moment-only
+    bool         is_explicit      = false; // Solver/Coupling
+  };
+
+  /** The worst value of a figure in a run so far, and since when it has been beyond its threshold. */
+  struct ConcernMemory
+  {
+    double worst = std::numeric_limits<double>::quiet_NaN(), time_of_worst = worst, since = worst;
+  };
+
+  /**
+   * What the steps leave over, |r_E| summed over capsules and steps, and the integral of the dissipation. The first four steps are not counted: from rest they pass a transient that need not be resolved, and
+   * the integral of (33b) has fewer than four levels.
+   */
+  struct EnergyMemory
+  {
+    double       left_over = 0., dissipated = 0., last_dissipation = 0.;
+    unsigned int n_steps = 0;
+
+    /** @param left_over sum of |r_E| over the capsules. @param dissipation at the end of the step. */
+    void
+    add_step(double length, double left_over, double dissipation);
+
+    /** left_over / dissipated; not a number before ten steps have been counted, and for shells whose forces have no energy. */
+    double
+    defect() const;
+  };
+
+  /** Part of what a checkpoint has to write. */
+  struct WarningMemory
+  {
+    std::array<ConcernMemory, n_concerns> concerns;
+    EnergyMemory                          energy;
+  };
+
+  /** The value beyond which there is a warning; below it for triangle, curvature, gap and wall, above it for the others. */
+  double
+  warning_threshold(Concern concern, const ResolutionContext &context);
+
+  /** What happened, the figure, since when, and what to change. @param name of the capsules that it is about may be empty. */
+  std::string
+  warning_text(Concern concern, double value, double time, const ResolutionContext &context);
+
+  /** Takes the figures of a step into account. Returns the warnings that have not been given before, each once. */
+  std::vector<std::string>
+  update_warnings(WarningMemory &memory, double time, const ConcernFigures &figures, const ResolutionContext &context);
+
+  /** "worst_triangle" and so on with the worst values of the run, for summary.csv. */
+  std::vector<std::pair<std::string, double>>
+  worst_figures(const WarningMemory &memory);
+
+  /** One line for each warning that has been given: the worst value and its time; empty without warnings. */
+  std::string
+  warnings_in_short(const WarningMemory &memory, const ResolutionContext &context);
+} // namespace tanktread
+
+#endif

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: measures in each step how well a run is resolved, and warns.
+
+#include <tanktread/simulation/resolution_monitor.h>
+
+#include <cmath>
+#include <limits>
+
+namespace tanktread
+{
+  namespace
+  {
+    ConcernFigures
+    unknown_figures()
+    {
+      ConcernFigures result;
+      result.fill(std::numeric_limits<double>::quiet_NaN());
+      return result;
+    }
+
+    double &
+    of(ConcernFigures &figures, const Concern concern)
+    {
+      return figures[static_cast<std::size_t>(concern)];
+    }
+  } // namespace
+
+
+  ResolutionMonitor::ResolutionMonitor(const Parameters &parameters, Scene &scene, WarningMemory &memory, Log &log)
+    : scene_(scene)
+    , memory_(memory)
+    , log_(log)
+    , mesh_quality_(scene.capsule().topology())
+  {
+    const FluidMesh &mesh     = scene.fluid().mesh();
+    context_.finest_cell      = mesh.cell_size(mesh.finest_level());
+    context_.initial_triangle = worst_triangle(scene.capsule().topology().faces, scene.capsule().initial());
+    context_.control_points   = scene.capsule().n_control_points();
+    context_.bends            = parameters.scene.bending_modulus() > 0. || parameters.shell.thickness > 0.;
+    context_.moments_alone    = context_.bends && parameters.shell.form == BendingForm::moment_only;
+    context_.is_explicit      = parameters.solver.coupling == TimeCoupling::explicit_euler;
+  }
+
+
+  void
+  ResolutionMonitor::measure(const State &state, std::vector<CapsuleObservables> &capsules) const
+  {
+    const Timings::Scope scope(scene_.timings(), "- resolution");
+    const ShellJumps    &jumps = scene_.coupling().jumps();
+    for (std::size_t c = 0; c < capsules.size(); ++c)
+      {
+        capsules[c].shape = mesh_quality_(state.capsules[c].x);
+        if (!jumps.are_none())
+          capsules[c].interface = interface_quality(jumps.shells()[c], scene_.communicator());
+      }
+  }
+
+
+  void
+  ResolutionMonitor::check(const State &state, const StepObservables &step, const std::vector<CapsuleObservables> &capsules)
+  {
+    const Timings::Scope scope(scene_.timings(), "- resolution");
+    ConcernFigures       figures   = unknown_figures();
+    double               left_over = 0.;
+    for (const CapsuleObservables &o : capsules)
+      {
+        of(figures, Concern::triangle)      = std::fmin(of(figures, Concern::triangle), o.shape.worst_triangle);
+        of(figures, Concern::curvature)     = std::fmin(of(figures, Concern::curvature), o.shape.smallest_radius);
+        of(figures, Concern::wrinkles)      = std::fmax(of(figures, Concern::wrinkles), o.shape.detail_ratio);
+        of(figures, Concern::without_jumps) = std::fmax(of(figures, Concern::without_jumps), o.interface.without_jumps);
+        of(figures, Concern::folds)         = std::fmax(of(figures, Concern::folds), o.interface.folded);
+        left_over += std::abs(o.energy_residual);
+      }
+    of(figures, Concern::gap) = scene_.gap(state).gap;
+    if (!scene_.description().liquids.unbounded) // there the faces are no walls
+      of(figures, Concern::wall) = scene_.distance_from_faces(state);
+    if (step.step > 0.)
+      memory_.energy.add_step(step.step, left_over, step.dissipation);
+    of(figures, Concern::energy) = memory_.energy.defect();
+    for (const std::string &text : update_warnings(memory_, step.time, figures, context_))
+      log_.line(text);
+  }
+
+
+  void
+  ResolutionMonitor::finish() const
+  {
+    const std::string text = warnings_in_short(memory_, context_);
+    if (!text.empty())
+      log_.line("\n" + text);
+  }
+} // namespace tanktread

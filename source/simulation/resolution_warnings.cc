@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: when a run has to say that its meshes or steps do not resolve what it computes.
+
+#include <tanktread/simulation/resolution_warnings.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace tanktread
+{
+  namespace
+  {
+    // Thresholds lie between the worst values of runs that are right and of runs that are not; doc/limits.md has both.
+
+    constexpr double least_triangle                 = 0.4;  // right: 0.60 and more; a mesh that degenerates: 0.002 to 0.37
+    constexpr double least_part_of_initial_triangle = 0.5;  // right: 0.8 and more, wrong: 0.54 and less, soon much less
+    constexpr double least_radius                   = 0.75; // in finest cells. Right: 0.95 and more; not resolved: 0.05 to 0.60
+    constexpr double largest_detail                 = 0.7;  // right: 0.08 to 0.55, noise of the control points from 0.74 on; membranes that wrinkle: 1.6 to 9
+    constexpr double largest_share_without_jumps    = 0.02; // right, and wrong for other reasons: up to 0.006
+    constexpr double largest_share_folded           = 0.03; // right: up to 0.010; two sheets in the same cells: 0.03 to 0.67
+    constexpr double least_gap                      = 1.; // in finest cells. A pair that passes at 1.1 cells has its gap wrong by 2.9 %, at 2.1 cells by 0.8 %
+    constexpr double largest_energy_defect =
+      0.01; // right: up to 0.0024 at any time; explicit steps at a half and a quarter of their stable length: 0.05; unstable ones: 0.75 to 1
+
+    constexpr unsigned int n_steps_of_start = 4, least_n_steps = 10;
+
+    struct Entry
+    {
+      Concern     concern;
+      const char *name; // in summary.csv
+      bool        low_is_bad;
+    };
+
+    constexpr std::array<Entry, n_concerns> entries = {{{Concern::triangle, "worst_triangle", true},
+                                                        {Concern::curvature, "worst_radius_of_curvature", true},
+                                                        {Concern::wrinkles, "worst_detail_ratio", false},
+                                                        {Concern::without_jumps, "worst_area_without_jumps", false},
+                                                        {Concern::folds, "worst_area_folded", false},
+                                                        {Concern::gap, "worst_gap", true},
+                                                        {Concern::wall, "worst_wall_gap", true},
+                                                        {Concern::energy, "worst_energy_defect", false}}};
+
+    bool
+    is_worse(const Entry &entry, const double value, const double than)
+    {
+      return entry.low_is_bad ? value < than : value > than; // false if one is not a number
+    }
+
+    std::string
+    number(const double value)
+    {
+      std::ostringstream text;
+      text.precision(3);
+      text << value;
+      return text.str();
+    }
+
+    std::string
+    percent(const double value)
+    {
+      return number(100. * value) + " %";
+    }
+
+    std::string
+    cells(const ResolutionContext &context)
+    {
+      return number(context.finest_cell) + " a";
+    }
+
+    std::string
+    finer_cells(const double value)
+    {
+      return "Take Fluid mesh/Finest cell = " + number(value) + " or less, or a smaller Accuracy/Target error";
+    }
+
+    std::string
+    triangle_text(const double q, const ResolutionContext &context)
+    {
+      return "the worst triangle of a shell's control mesh has the quality " + number(q) + " (equal sides: 1, at first " + number(context.initial_triangle) +
+        "), below " + number(warning_threshold(Concern::triangle, context)) + ": the mesh degenerates, and what is computed on it is not to be trusted. " +
+        (context.moments_alone ? "The moments alone leave it free to slide: take Capsule/Bending form = variational or a membrane"
+                               : "Take a shell that resists more (bending, area dilatation), shorter steps or an earlier Scene/End time") +
+        "; a finer control mesh (Shell mesh/Level) only postpones it.";
+    }
+
+    std::string
+    curvature_text(const double radius, const ResolutionContext &context)
+    {
+      return "the shell's smallest radius of curvature is " + number(radius) + " a, less than " + number(least_radius) + " finest cells of the fluid (" +
+        cells(context) + "): the flow about that fold is not resolved. " + finer_cells(radius / least_radius) +
+        (context.bends ? "." : "; a shell without bending stiffness can fold without limit: a small Scene/Reduced bending modulus (0.005) gives folds a size.");
+    }
+
+    std::string
+    wrinkles_text(const double ratio, const ResolutionContext &context)
+    {
+      return "the detail that the shell has on its control mesh of " + std::to_string(context.control_points) + " points is " + number(ratio) +
+        " times that on the next coarser one, above " + number(largest_detail) + " (a shape that is resolved: 0.1 to 0.4): it " +
+        (context.bends
+           ? "is not resolved, or wriggles from point to point. Take " +
+             std::string(context.is_explicit ? "Solver/Coupling = implicit or a shorter Time/Step." : "a finer control mesh (Shell mesh/Level).")
+           : "wrinkles from point to point, and on a finer one it will wrinkle more. Take a small Scene/Reduced bending modulus (0.005), or a control mesh that cannot "
+             "follow wrinkles (Shell mesh/Level = 2).");
+    }
+
+    std::string
+    without_jumps_text(const double share, const ResolutionContext &context)
+    {
+      return percent(share) + " of a shell's area, more than " + percent(largest_share_without_jumps) +
+        ", lie in cells of the fluid without kink and jump: it is thinner than half a cell there, or has left the finest cells. " +
+        (context.is_explicit ? "Take a shorter Time/Step or a larger Fluid mesh/Band width, or " : "Take ") + "a smaller Fluid mesh/Finest cell than " +
+        number(context.finest_cell) + ".";
+    }
+
+    std::string
+    folds_text(const double share, const ResolutionContext &context)
+    {
+      return percent(share) + " of a shell's area, more than " + percent(largest_share_folded) + ", lie in cells of the fluid (" + cells(context) +
+        ") in which the shell turns back or has an edge: the enriched interface knows one sheet a cell. " + finer_cells(0.5 * context.finest_cell) + ".";
+    }
+
+    std::string
+    gap_text(const char *what, const double gap, const ResolutionContext &context)
+    {
+      return std::string(what) + " are " + number(gap) + " a apart, less than a finest cell of the fluid (" + cells(context) +
+        "): the film of liquid between them is not resolved, its pressure is too small and they come too near. " + finer_cells(0.5 * gap) + ".";
+    }
+
+    std::string
+    energy_text(const double defect, const ResolutionContext &context)
+    {
+      return "the steps have left over " + percent(defect) + " of the dissipation in the balance of energy, more than " + percent(largest_energy_defect) +
+        ". Take " +
+        (context.is_explicit ? "Solver/Coupling = implicit, or a shorter Time/Step." : "a smaller Time/Tolerance or Time/Step, or Time/Scheme = BDF3.");
+    }
+
+    std::string
+    text_without_time(const Concern concern, const double value, const ResolutionContext &context)
+    {
+      switch (concern)
+        {
+          case Concern::triangle:
+            return triangle_text(value, context);
+          case Concern::curvature:
+            return curvature_text(value, context);
+          case Concern::wrinkles:
+            return wrinkles_text(value, context);
+          case Concern::without_jumps:
+            return without_jumps_text(value, context);
+          case Concern::folds:
+            return folds_text(value, context);
+          case Concern::gap:
+            return gap_text("two shells", value, context);
+          case Concern::wall:
+            return gap_text("a shell and a wall", value, context);
+          default:
+            return energy_text(value, context);
+        }
+    }
+  } // namespace
+
+
+  void
+  EnergyMemory::add_step(const double length, const double of_step, const double dissipation)
+  {
+    if (++n_steps > n_steps_of_start)
+      {
+        left_over += of_step;
+        dissipated += 0.5 * length * (std::abs(last_dissipation) + std::abs(dissipation));
+      }
+    last_dissipation = dissipation;
+  }
+
+
+  double
+  EnergyMemory::defect() const
+  {
+    return n_steps < n_steps_of_start + least_n_steps || !(dissipated > 0.) ? std::numeric_limits<double>::quiet_NaN() : left_over / dissipated;
+  }
+
+
+  double
+  warning_threshold(const Concern concern, const ResolutionContext &context)
+  {
+    switch (concern)
+      {
+        case Concern::triangle:
+          return std::min(least_triangle, least_part_of_initial_triangle * context.initial_triangle);
+        case Concern::curvature:
+          return least_radius * context.finest_cell;
+        case Concern::wrinkles:
+          return largest_detail;
+        case Concern::without_jumps:
+          return largest_share_without_jumps;
+        case Concern::folds:
+          return largest_share_folded;
+        case Concern::gap:
+        case Concern::wall:
+          return least_gap * context.finest_cell;
+        default:
+          return largest_energy_defect;
+      }
+  }
+
+
+  std::string
+  warning_text(const Concern concern, const double value, const double time, const ResolutionContext &context)
+  {
+    return "WARNING: from time " + number(time) + " on " + text_without_time(concern, value, context);
+  }
+
+
+  std::vector<std::string>
+  update_warnings(WarningMemory &memory, const double time, const ConcernFigures &figures, const ResolutionContext &context)
+  {
+    std::vector<std::string> result;
+    for (std::size_t i = 0; i < n_concerns; ++i)
+      {
+        const Entry   &entry = entries[i];
+        ConcernMemory &past  = memory.concerns[i];
+        const double   value = figures[static_cast<std::size_t>(entry.concern)];
+        if (is_worse(entry, value, past.worst) || (std::isnan(past.worst) && !std::isnan(value)))
+          {
+            past.worst         = value;
+            past.time_of_worst = time;
+          }
+        if (std::isnan(past.since) && is_worse(entry, value, warning_threshold(entry.concern, context)))
+          {
+            past.since = time;
+            result.push_back(warning_text(entry.concern, value, time, context));
+          }
+      }
+    return result;
+  }
+
+
+  std::vector<std::pair<std::string, double>>
+  worst_figures(const WarningMemory &memory)
+  {
+    std::vector<std::pair<std::string, double>> result;
+    for (std::size_t i = 0; i < n_concerns; ++i)
+      result.emplace_back(entries[i].name, memory.concerns[i].worst);
+    return result;
+  }
+
+
+  std::string
+  warnings_in_short(const WarningMemory &memory, const ResolutionContext &context)
+  {
+    std::string result;
+    for (std::size_t i = 0; i < n_concerns; ++i)
+      if (const ConcernMemory &past = memory.concerns[i]; !std::isnan(past.since))
+        result += std::string(result.empty() ? "" : "\n") + "WARNED from time " + number(past.since) + " on: " + entries[i].name + " came to " +
+          number(past.worst) + " at time " + number(past.time_of_worst) + " (threshold " + number(warning_threshold(entries[i].concern, context)) + ").";
+    return result;
+  }
+} // namespace tanktread
