@@ -34,7 +34,7 @@ def arguments():
 def run(args):
     command = ["mpirun", "--oversubscribe", "-np", str(args.ranks), args.program, args.prm]
     for setting in args.set + [f"Output/Directory={args.output}"]:
-        command += ["--set", setting.replace("|", ";")]  # a semicolon separates entries of CMake's lists
+        command += ["--set", setting]
     print(" ".join(command), flush=True)
     result = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     print(result.stdout)
