@@ -65,32 +65,11 @@ def compute(args, name, notes, target):
     record.write_text(json.dumps({"exit_code": os.waitstatus_to_exitcode(status), "cpu_seconds": usage.ru_utime + usage.ru_stime}))
 
 
-def direction(D, theta):
-    """D exp(2 i theta), smooth also where a section is round for a moment; 0 where it is round for longer."""
-    return np.where(np.isfinite(theta), D * np.exp(2j * np.pi * np.nan_to_num(theta)), 0.)
-
-
-def cubic(times, values, wanted):
-    """The cubics through the four rows around each wanted time."""
-    result = []
-    for time in wanted:
-        i = min(max(int(np.searchsorted(times, time)), 2), len(times) - 2)
-        t, v = times[i - 2:i + 2], values[i - 2:i + 2]
-        result.append(sum(v[j] * np.prod([(time - t[k]) / (t[j] - t[k]) for k in range(4) if k != j]) for j in range(4)))
-    return np.array(result)
-
-
 def errors(folder, reference):
     """(of D, of theta/pi, limit of D, its bar, limit of theta/pi, its bar), relative where D; nan where there is none."""
     history, _ = run_files.read_table(folder / "history.csv")
     summary = {row.split(",")[0]: run_files.number(row.split(",")[1]) for row in (folder / "summary.csv").read_text().splitlines()}
-    largest = np.nanmax(reference["D"])
-    rows = reference["t"] <= history["time"][-1]
-    wanted = direction(reference["D"][rows], reference["theta_over_pi"][rows])
-    found = cubic(history["time"], direction(history["D_xz"], history["theta"]), reference["t"][rows])
-    of_D = np.max(np.abs(np.abs(found) - np.abs(wanted))) / largest
-    turn = np.angle(found * np.conj(wanted)) / (2 * np.pi)
-    of_theta = np.max(np.abs(turn) * np.abs(wanted)) / largest
+    of_D, of_theta = run_files.largest_differences(run_files.standard_columns(history), run_files.standard_columns(reference))
     limits = [math_nan(summary.get(key)) for key in ("D_limit", "D_limit_error", "theta_limit", "theta_limit_error")]
     return of_D, of_theta, limits[0] / reference["D"][-1] - 1, limits[1] / reference["D"][-1], limits[2] - reference["theta_over_pi"][-1], limits[3]
 

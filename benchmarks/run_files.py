@@ -99,6 +99,22 @@ def interpolated(times, values, wanted):
     return result if wanted.ndim else float(result)
 
 
+def direction(D, theta):
+    """D exp(2 i theta), theta in units of pi: smooth also where a section is round for a moment; 0 where it is round for longer."""
+    return np.where(np.isfinite(theta), D * np.exp(2j * np.pi * np.nan_to_num(theta)), 0.)
+
+
+def largest_differences(series, wanted):
+    """(of D, of theta/pi) of one series at the times of another that both have: D relative to its largest value, theta weighted with D over that, since a round
+    section has no direction. Columns as of standard_columns()."""
+    rows = wanted["time"] <= series["time"][-1] * (1 + 1e-9)
+    largest = np.nanmax(wanted["D"])
+    truth = direction(wanted["D"][rows], wanted["theta"][rows])
+    found = interpolated(series["time"], direction(series["D"], series["theta"]), wanted["time"][rows])
+    turn = np.angle(found * np.conj(truth)) / (2 * np.pi)
+    return np.max(np.abs(np.abs(found) - np.abs(truth))) / largest, np.max(np.abs(turn) * np.abs(truth)) / largest
+
+
 # ------------------------------------------------------------------------------------------------------------------- references
 SCENE = {  # key in a reference file: (parameter of a run, its value where the run's file does not say, value where the reference does not say: None: any)
     "flow": ("Scene/Flow", "shear", None),

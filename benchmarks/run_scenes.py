@@ -99,8 +99,8 @@ class Progress:
 class Computation:
     """Runs of the program on a pool of threads."""
 
-    def __init__(self, program, jobs, ranks):
-        self.program, self.jobs, self.ranks = str(program.resolve()), jobs, ranks
+    def __init__(self, program, jobs, ranks, resume):
+        self.program, self.jobs, self.ranks, self.resume = str(program.resolve()), jobs, ranks, resume
         self.progress, self.processes, self.stopped = Progress(), [], False
 
     def command(self, run, settings, folder):
@@ -112,10 +112,14 @@ class Computation:
         return ["mpirun", *(["--bind-to", "none"] if self.jobs > 1 else []), "-np", str(self.ranks), *words]
 
     def compute(self, title, run, resolution, settings):
-        """One run; leaves run.json beside its results, also when it fails or is refused."""
+        """One run; leaves run.json beside its results, also when it fails or is refused. It has no CPU seconds where a study has gone on from where it was interrupted."""
         if self.stopped:
             return
         folder, end, start, tail = run.folder(resolution), run.end_time(), time.time(), []
+        is_study = "Study/Vary" in settings
+        goes_on = is_study and self.resume and (folder / "summary.csv").is_file()
+        if is_study and not goes_on:
+            shutil.rmtree(folder, ignore_errors=True)  # the program does not compute again what is there
         environment = {"OMP_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", **os.environ}
         process = subprocess.Popen(self.command(run, settings, folder), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment, cwd=ROOT)
         self.processes.append(process)
@@ -131,6 +135,8 @@ class Computation:
         message = "" if code == 0 else next((text for text in tail if "not available" in text or "FAILED" in text), " ".join(tail[-1:]))
         seconds = round(time.time() - start, 1)
         record = {"input": run.key(settings), "exit_code": code, "message": message, "seconds": seconds, "cpu_seconds": round(used.ru_utime + used.ru_stime, 2), "ranks": self.ranks, "settings": settings}
+        if goes_on:
+            del record["cpu_seconds"]
         folder.mkdir(parents=True, exist_ok=True)
         (folder / "run.json").write_text(json.dumps(record, indent=1) + "\n")
         self.progress.end(title, ("done" if code == 0 else f"exit code {code}: {message}") + f", {seconds:.0f} s")
@@ -148,7 +154,7 @@ def compute(args, wanted):
     if len(left) < len(wanted):
         print(f"finished before: {len(wanted) - len(left)} of {len(wanted)} runs")
     jobs, ranks = division_of_cores(len(left), len(os.sched_getaffinity(0)), args.jobs, args.ranks)
-    computation = Computation(args.program, jobs, ranks)
+    computation = Computation(args.program, jobs, ranks, args.resume)
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
         futures = [pool.submit(computation.compute, f"[{i + 1}/{len(left)}] {item[1]} {item[0].name}", *item) for i, item in enumerate(left)]
         try:

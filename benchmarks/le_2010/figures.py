@@ -9,7 +9,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import snapshots
-from run_files import without_jumps
+import values
+from run_files import direction, interpolated, without_jumps
 
 COLORS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00"]
 LABELS = {"D_xz": r"$D_{xz}$", "theta": r"$\theta/\pi$", "delta": r"$\delta/\pi$", "area": r"area / initial area"}
@@ -20,11 +21,25 @@ def khat_label(result):
     return rf"$\hat\kappa$ = {result.khat:g}"
 
 
-def values(result, column):
-    series = result.series[column]
-    if column == "theta":
-        return without_jumps(series)
-    return series / series[0] if column == "area" else series
+def curve(result, column):
+    """Times and values between the steps, which may be long, by cubics; the section's angle with gaps where it jumps."""
+    series = result.series
+    times = np.linspace(0, series["time"][-1], 2001)
+    if column in ("D_xz", "theta"):  # smooth together
+        section = interpolated(series["time"], direction(series["D"], series["theta"]), times)
+        if column == "D_xz":
+            return times, np.abs(section)
+        return times, without_jumps(np.where(section == 0, math.nan, np.angle(section) / (2 * math.pi)))
+    found = interpolated(series["time"], series[column], times)
+    return times, found / found[0] if column == "area" else found
+
+
+def draw_limit(axis, result, column, color):
+    """Where the run goes, with its error bar, just after its end."""
+    name = {"D_xz": "D", "theta": "theta"}.get(column)
+    if name and math.isfinite(result.number(f"{name}_limit")):
+        limit = values.limit(result, name, name)
+        axis.errorbar(result.series["time"][-1] * 1.04, limit.value, limit.bar, color=color, marker="o", markersize=3, capsize=3, linewidth=1)
 
 
 def draw_curves(axes, results, columns):
@@ -34,7 +49,8 @@ def draw_curves(axes, results, columns):
             continue
         reference = result.reference()
         for axis, column in zip(axes, columns):
-            axis.plot(result.series["time"], values(result, column), color=color, linewidth=1.6, label=khat_label(result))
+            axis.plot(*curve(result, column), color=color, linewidth=1.6, label=khat_label(result))
+            draw_limit(axis, result, column, color)
             name = {"D_xz": "D"}.get(column, column)
             if reference and name in reference[0]:
                 draw = without_jumps if column == "theta" else np.asarray
@@ -93,7 +109,8 @@ def draw_relaxation(results):
                 continue
             label, style = relaxation_style(result.name)
             for name in ("L", "B"):
-                axes[1, column].plot(result.series["time"], result.series[name], color=color, label=label if name == "L" else None, **style)
+                points = (result.series["time"], result.series[name]) if "_step" in result.name else curve(result, name)
+                axes[1, column].plot(*points, color=color, label=label if name == "L" else None, **style)
         axes[1, column].set(xlabel=r"$t\,\kappa_B/(\mu a^3)$", ylabel="semi-axes $L/a$, $B/a$", xlim=(-0.1, 5.2))
         if any(result.series for result in group):
             axes[1, column].legend(fontsize=8)

@@ -2,15 +2,13 @@
 # Part of Tanktread: the report of the scenes of Le (2010).
 """write(file, results, ...): what the runs show, figure by figure, and for each statement in the text of Le (2010)."""
 
-import math
-
-import numpy as np
-
 import motion
 import report_parts
 import runs
 import statements
-from report_parts import difference, show, table
+import tables
+from report_parts import table
+from tables import short
 
 TITLES = {
     "fig01": "Relaxation in a liquid at rest",
@@ -26,67 +24,12 @@ TITLES = {
     "fig11": "Biconcave capsule, G = 0.1, viscosity ratio 4",
     "fig12": "Biconcave capsule, G = 0.1, viscosity ratio 4: snapshots",
 }
-REFERENCE_TIMES = (0.25, 0.75)
-
-
-def short(result):
-    return result.name.split("/")[1] + (f", {result.resolution}" if result.state() == "done" else "")
 
 
 def not_done(results):
-    """Rows for runs without a result."""
-    return [(short(result), result.state()) for result in results if result.state() != "done"]
-
-
-def relaxation_table(results):
-    """Semi-axes at the times for which there is a reference, and the end of each run."""
-    rows = []
-    for result in results:
-        if not result.series:
-            continue
-        reference = result.reference()
-        cells = [short(result)]
-        for time in REFERENCE_TIMES:
-            for name in ("L", "B", "W"):
-                wanted = runs.interpolated(reference[0]["time"], reference[0][name], time) if reference else math.nan
-                cells.append(difference(result.at(time, name), wanted))
-        last = {name: result.series[name][-1] for name in ("time", "L", "B")}
-        cells += [f"t = {last['time']:g}: {last['L'] / last['B'] - 1:.1e}", f"{np.abs(result.series['volume_error']).max():.0e}", str(len(result.series["time"]) - 1)]
-        rows.append(cells)
-    head = ["run"] + [f"{name}({time:g})" for time in REFERENCE_TIMES for name in ("L", "B", "W")] + ["L/B − 1 at the end", "volume error", "steps"]
-    return table(head, rows) if rows else ""
-
-
-def steady_table(results):
-    rows = []
-    for result in results:
-        if not result.series:
-            continue
-        reference = result.reference()
-        last = {name: result.series[name][-1] for name in ("D_xz", "theta", "intrinsic_viscosity", "N1", "N2", "time")}
-        wanted = [reference[0][name][-1] if reference else math.nan for name in ("D", "theta")]
-        rows.append([short(result), result.summary.get("mode", "–"), show(last["time"], 3), difference(last["D_xz"], wanted[0]), difference(last["theta"], wanted[1]),
-                     show(last["intrinsic_viscosity"], 4), show(last["N1"], 3), show(last["N2"], 3), f"{np.abs(result.series['volume_error']).max():.0e}"])
-    head = ["run", "motion", "end", "D (from the reference)", "θ/π (from the reference)", "[η]", "N₁", "N₂", "volume error"]
-    return table(head, rows) if rows else ""
-
-
-def motion_table(results):
-    rows = []
-    for result in results:
-        if not result.series:
-            continue
-        reference = result.reference()
-        wanted = (reference[1] if reference else None) or {}
-        cells = [short(result), result.summary.get("mode", "–") + (f" (reference: {wanted['mode']})" if wanted else "")]
-        cells += [difference(result.number(name), wanted.get(name, math.nan)) for name in ("D_minimum", "D_maximum", "D_period")]
-        frequency = result.number("tumbling_frequency") if result.summary.get("mode") == "tumbling" else result.number("tank_treading_frequency")
-        late = result.series["time"] >= result.number("from") if not math.isnan(result.number("from")) else slice(None)
-        cells += [show(frequency, 4), show(float(np.mean(result.series["intrinsic_viscosity"][late])), 4), f"{np.abs(result.series['volume_error']).max():.0e}",
-                  f"{100 * np.abs(result.series['area'] / result.series['area'][0] - 1).max():.2g} %"]
-        rows.append(cells)
-    head = ["run", "motion", "D min", "D max", "period of D", "turns per 1/γ̇", "mean [η]", "volume error", "area changes by"]
-    return table(head, rows) if rows else ""
+    """Rows for runs without a result, or without error bars."""
+    rows = [(short(result), result.state()) for result in results if result.state() != "done"]
+    return rows + [(short(result), f"no error bars: {result.record['message']}") for result in results if result.state() == "done" and result.record["exit_code"] != 0]
 
 
 def evenness(results):
@@ -105,7 +48,7 @@ def evenness(results):
 
 
 NOTES = {"fig07": evenness}
-TABLES = {"fig01": relaxation_table, "fig02": None, "fig03": steady_table, "fig04": steady_table, "fig10": None, "fig12": None}
+TABLES = {"fig01": tables.relaxation, "fig02": None, "fig03": tables.steady, "fig04": tables.steady, "fig10": None, "fig12": None}
 
 
 def heading(figure):
@@ -115,14 +58,14 @@ def heading(figure):
 def section(figure, results, figures_folder):
     wanted = results.of(figure)
     text = [heading(figure), f"![{TITLES[figure]}]({figures_folder}/{figure}.png)\n"]
-    make = TABLES.get(figure, motion_table)
+    make = TABLES.get(figure, tables.motion)
     if make:
-        text.append(make(wanted))
+        text += [make(wanted), tables.resources(wanted)]
     if figure in NOTES:
         text.append(NOTES[figure](wanted))
     missing = not_done(wanted)
     if missing:
-        text.append(table(["run without a result", "why"], missing))
+        text.append(table(["run without a result or bars", "why"], missing))
     return "\n".join(part for part in text if part)
 
 
@@ -131,12 +74,16 @@ INTRODUCTION = """# The scenes of Le (2010)
 D. V. Le, *Effect of bending stiffness on the deformation of liquid capsules enclosed by thin shells in shear flow*, Phys. Rev. E 82, 016318 (2010), computed with this code.
 This page is written by
 
-    benchmarks/le_2010/run.py [--quick | --full] --update-doc
+    benchmarks/le_2010/run.py [--quick | --fair | --full] --update-doc
 
-from the results that it finds; the parameter files are in `benchmarks/le_2010`. Each run is shown at the finest resolution at which it was done: {resolutions}. In shear, bending has the form
-`moment-only`, the paper's. Dashed curves and the
-differences in brackets are from the boundary-integral solutions of `benchmarks/reference`, which are for an unbounded liquid; what the box does is part of the difference. Where there is no
-bracket there is no such solution. Motion, periods and frequencies are judged by the rule of `doc/theory.md`, section 8.2.
+from the results that it finds. The parameter files, in `benchmarks/le_2010`, hold physics and times; cells, control mesh, steps and tolerances are chosen by the dial (`accuracy.md`) for the largest relative error of D that is wanted: {resolutions}.
+Each run is shown at the finest of them at which it was done. The paper has walls at z = ±5a and is periodic along x and y; here the liquid is unbounded (`theory.md`, section 3.4).
+
+**Error bars** are those of a study (`theory.md`, section 8.4): the difference from a companion of four times the target, for limits also the bar of the limit. "Whole run" is the same for the curve of D, at all times and relative to its largest value, and of θ/π, weighted with
+D over its largest value. In brackets, and as dashed curves, are differences from the boundary-integral solutions of `benchmarks/reference`: of limits from the last row of the solution, of extremes and periods from its own, of curves the largest at any time. Where there is no
+bracket there is no such solution. A membrane that wrinkles converges to nothing: its bars say little. Motion, periods and frequencies are judged by the rule of `theory.md`, section 8.2; means are over whole periods of D. CPU seconds are of one run with its companion.
+
+In shear, bending has the form `moment-only`, the paper's.
 
 Choices where the paper leaves one: "inclined at 45°" is read as the long axis of the section at 45° to the flow (`Inclination = 0.25`); oblate and biconcave shells bend about their
 initial curvature, spheres and relaxing shells about a flat one; Skalak's C is 150 in figs. 9 and 10 and 100 in figs. 11 and 12. In the relaxation scenes the membrane is absent (`Membrane law = none`): with one that is at ease in the initial
@@ -180,7 +127,7 @@ def write(file, results, figures, figures_folder, keep_others=False):
     """The report of these figures, drawn in `figures_folder` as seen from the file. Sections of other figures, and what was seen of them, stay as they are in
     the file or are left out."""
     sections, seen_before = former(file) if keep_others else ({}, {})
-    described = "; ".join(f"`{name}` has {runs.described(settings)}" for name, settings in runs.RESOLUTIONS.items())
+    described = ", ".join(f"`{name}` {target}" for name, target in runs.RESOLUTIONS.items())
     text = [INTRODUCTION.format(resolutions=described)]
     text += [section(figure, results, figures_folder) if figure in figures else sections.get(heading(figure), "") for figure in runs.figure_names()]
     rows = []

@@ -3,12 +3,12 @@
 # Part of Tanktread: computes and draws the figures of Le, Phys. Rev. E 82, 016318 (2010).
 """Compute the scenes of Le (2010), draw his figures beside independent solutions, and report.
 
-    run.py [fig05 ...] [--quick | --full] [--jobs N] [--ranks N] [--resume] [--draw] [--update-doc]
+    run.py [fig05 ...] [--quick | --fair | --full] [--jobs N] [--ranks N] [--resume] [--draw] [--update-doc]
 
-Without names all figures are computed. The parameter files are in the folders fig01 ... fig12 beside this script, results go to
-output/le_2010/<resolution>/<figure>/<run>, figures to output/le_2010/figures, the report to output/le_2010/report.md. A run that fails or that the program
-refuses does not stop the others; the report says so. The report is made of all runs that are there, those of earlier calls included, each at the finest
-resolution at which it was done.
+Without names all figures are computed, each run for a target error (Accuracy/Target error) and with a companion that tells its error bars. The parameter files
+are in the folders fig01 ... fig12 beside this script, results go to output/le_2010/<resolution>/<figure>/<run>, figures to output/le_2010/figures, the report
+to output/le_2010/report.md. A run that fails or that the program refuses does not stop the others; the report says so. The report is made of all runs that are
+there, those of earlier calls included, each at the finest resolution at which it was done.
 
 doc/le_2010.md and its figures change with --update-doc only: those figures that are named, or all, whose runs are all there, none of them coarser than
 what doc/ shows. What was not computed stays as it is.
@@ -35,8 +35,8 @@ def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("names", nargs="*", metavar="FIGURE", help="fig01 ... fig12, or single runs as fig05/G0.05_k0; all figures if none is given")
     size = parser.add_mutually_exclusive_group()
-    for name, settings in runs.RESOLUTIONS.items():
-        size.add_argument(f"--{name}", action="store_const", dest="resolution", const=name, default="quick", help=runs.described(settings))
+    for name in runs.RESOLUTIONS:
+        size.add_argument(f"--{name}", action="store_const", dest="resolution", const=name, default="quick", help=runs.described(name))
     run_scenes.add_arguments(parser)
     args = parser.parse_args()
     unknown = [name for name in args.names if not (runs.HERE / name).is_dir() and not (runs.HERE / f"{name}.prm").is_file()]
@@ -65,7 +65,7 @@ def update_doc(args, results):
 def main():
     args = arguments()
     if not args.draw:
-        run_scenes.compute(args, [(run, args.resolution, runs.RESOLUTIONS[args.resolution]) for run in runs.find(args.names)])
+        run_scenes.compute(args, [(run, args.resolution, runs.settings(run, args.resolution)) for run in runs.find(args.names)])
     results = runs.Results()
     drawn = [name for name in runs.figure_names() if figures.draw(name, results, runs.OUTPUT / "figures")]
     report.write(runs.OUTPUT / "report.md", results, drawn, "figures")

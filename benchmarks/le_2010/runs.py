@@ -2,7 +2,6 @@
 # Part of Tanktread: the runs behind the figures of Le (2010), and what they have left in their folders.
 """Which runs a figure needs, where their results are, and their series, with those of the reference solutions."""
 
-import math
 import pathlib
 import sys
 
@@ -15,17 +14,20 @@ import motion  # noqa: E402
 
 OUTPUT = run_scenes.ROOT / "output/le_2010"
 
-# From coarse to fine. The names are those of the parameter files, which hold physics and times; this says how fine, and in which box.
-RESOLUTIONS = {
-    "quick": {"Fluid mesh/Finest cell": "0.3125", "Shell mesh/Level": "2", "Scene/Box side": "20"},
-    "full": {"Fluid mesh/Finest cell": "0.15625", "Shell mesh/Level": "3", "Scene/Box side": "40"},
-}
+# From coarse to fine: targets of the dial, which chooses what the parameter files leave open.
+RESOLUTIONS = {"quick": "1e-2", "fair": "3e-3", "full": "1e-3"}
 
 
-def described(settings):
+def described(resolution):
     """A resolution in words."""
-    points = 10 * 4 ** int(settings["Shell mesh/Level"]) + 2
-    return f"cells of {settings['Fluid mesh/Finest cell']} a at the shell, {points} control points, a box of {settings['Scene/Box side']} a"
+    return f"a target error of {RESOLUTIONS[resolution]}"
+
+
+def settings(run, resolution):
+    """What is set beside the parameter file: the target, and the study that tells the error bars. Spheres in shear have a steady state, whose bar counts too."""
+    parameters = run.parameters()
+    is_steady = parameters.get("Scene/Flow", "shear") == "shear" and parameters.get("Capsule/Shape", "sphere") == "sphere"
+    return {"Accuracy/Target error": RESOLUTIONS[resolution], "Study/Vary": "target, stop" if is_steady else "target"}
 
 
 def figure_names():
@@ -60,27 +62,44 @@ def find(names):
     return [found[name] for name in sorted(found)]
 
 
+def read_series(file):
+    """Columns of a history, with D beside D_xz; {} if there is none."""
+    table = run_files.read_table(file)[0] if file.is_file() else {}
+    return {**table, "D": table["D_xz"]} if table else {}
+
+
+def read_bars(file):
+    """{(quantity, cause): bar} of a study, {} if there is none."""
+    table = [line.split(",") for line in file.read_text().splitlines()[1:]] if file.is_file() else []
+    return {(row[0], row[1]): run_files.number(row[3]) for row in table}
+
+
 class Result:
-    """The folder of a run at the finest resolution at which it has been done. `series` is {} when there is nothing."""
+    """The folder of a run at the finest resolution at which it has been done. `series` is {} when there is nothing, `companion` when there is no error bar."""
 
     def __init__(self, run):
         self.name, self.parameters = run.name, run.parameters()
         self.resolution, self.folder, self.record = None, None, None
         for resolution in RESOLUTIONS:  # from coarse to fine
             found = run.record(resolution)
-            if found and (self.record is None or found["exit_code"] == 0 or self.record["exit_code"] != 0):
+            if found and "Study/Vary" in found["settings"] and (self.record is None or found["exit_code"] == 0 or self.record["exit_code"] != 0):
                 self.resolution, self.folder, self.record = resolution, run.folder(resolution), found
-        self.series, self.summary, self.contours = {}, {}, []
-        if self.record is None or self.record["exit_code"] == 1:
-            return
-        history, summary, contours = (self.folder / f"{name}.csv" for name in ("history", "summary", "contours"))
-        if history.is_file():
-            self.series, _ = run_files.read_table(history)
+        self.series, self.companion, self.summary, self.bars, self.chosen, self.contours = {}, {}, {}, {}, {}, []
+        if self.record is not None and self.record["exit_code"] != 1:
+            self.read()
+
+    def read(self):
+        """What is in the folder; the companion is the run of four times the target."""
+        self.series, self.companion = (read_series(folder / "history.csv") for folder in (self.folder, self.folder / "study/target-1"))
+        self.bars = read_bars(self.folder / "study.csv")
+        summary, contours, used = (self.folder / name for name in ("summary.csv", "contours.csv", "used_parameters.prm"))
         if summary.is_file():
             self.summary = dict(line.split(",", 1) for line in summary.read_text().splitlines()[1:])
         if contours.is_file():
             table, _ = run_files.read_table(contours)
             self.contours = run_files.contours_by_time(table) if table else []
+        if used.is_file():
+            self.chosen = run_files.read_parameters(used)
 
     def number(self, quantity):
         return run_files.number(self.summary.get(quantity, "nan"))
@@ -94,10 +113,10 @@ class Result:
         return float(self.parameters.get("Scene/Reduced bending modulus", 0))
 
     def state(self):
-        """"done", or why there is nothing."""
+        """"done", also without a companion, or why there is nothing."""
         if self.record is None:
             return "not run"
-        if self.record["exit_code"] == 0:
+        if self.record["exit_code"] == 0 or self.summary.get("outcome") in ("done", "steady"):
             return "done"
         text = self.record["message"].split(";")[0]
         return "refused: " + text.split(": ")[-1] if self.record["exit_code"] == 1 else "failed: " + text
@@ -112,10 +131,6 @@ class Result:
             series["delta"] = motion.phase_angle(series["theta"], table["alpha_over_pi"])
             return series, motion.summary(series["time"], series["D"], series["theta"], table["alpha_over_pi"])
         return None
-
-    def at(self, time, quantity):
-        """Value at a time by a cubic through the four nearest rows."""
-        return run_files.interpolated(self.series["time"], self.series[quantity], time) if quantity in self.series else math.nan
 
 
 class Results:

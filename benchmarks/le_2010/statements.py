@@ -2,11 +2,10 @@
 # Part of Tanktread: what Le (2010) states in words, and how each statement is looked up in the results.
 """STATEMENTS: (figure, the statement in our words, function of the results that says what they show)."""
 
-import math
-
 import numpy as np
 
-import runs
+import run_files
+import values
 
 
 def done(results, figure, word=""):
@@ -45,8 +44,14 @@ def volume(results):
 
 
 def resolution(results):
-    found = {result.resolution: result.record["settings"] for result in results.runs.values() if result.series}
-    words = [f"{name}: {runs.described(settings)}" for name, settings in sorted(found.items())]
+    """Cells and control points at each target."""
+    found = {}
+    for result in results.runs.values():
+        if result.series:
+            cell, level = (run_files.number(result.chosen.get(name, "nan")) for name in ("Fluid mesh/Finest cell", "Shell mesh/Level"))
+            found.setdefault(result.record["settings"]["Accuracy/Target error"], []).append((cell, 10 * 4**level + 2))
+    words = [f"target {target}: {len(chosen)} runs, cells of {min(chosen)[0]:.2g} to {max(chosen)[0]:.2g} a, {min(n for _, n in chosen):g} to {max(n for _, n in chosen):g} control points"
+             for target, chosen in sorted(found.items(), key=lambda item: float(item[0]))]
     return "; ".join(words) or "not computed"
 
 
@@ -56,10 +61,10 @@ def falls_and_turns(figure, G):
         found = [result for result in done(results, figure) if result.G == G]
         if len(found) < 2:
             return "not computed"
-        D, theta = ([result.series[name][-1] for result in found] for name in ("D_xz", "theta"))
-        falls, grows = all(np.diff(D) < 0), all(np.diff(theta) > 0)
+        D, theta = ([values.limit(result, name, name) for result in found] for name in ("D", "theta"))
+        falls, grows = all(np.diff([value.value for value in D]) < 0), all(np.diff([value.value for value in theta]) > 0)
         verdict = f"D {'falls' if falls else 'does not always fall'}, θ {'grows' if grows else 'does not always grow'}"
-        return f"{verdict}: " + each(found, lambda r: f"D = {r.series['D_xz'][-1]:.4f}, θ = {r.series['theta'][-1]:.4f} π")
+        return f"{verdict}: " + "; ".join(f"κ̂ = {result.khat:g}: D = {a}, θ = ({b}) π" for result, a, b in zip(found, D, theta))
     return seen
 
 
@@ -69,19 +74,13 @@ def modes(figure, khat=None):
     return seen
 
 
-def amplitude(result, name):
-    start = result.number("from")
-    late = result.series["time"] >= (0 if math.isnan(start) else start)
-    return float(np.ptp(result.series[name][late]))
-
-
 def calmer(figure, names, period=False):
     """Range of some columns over the run, after its first half turn."""
     def seen(results):
         def text(result):
-            parts = [f"range of {symbol} {amplitude(result, name):.4f}" for name, symbol in names]
+            parts = [f"range of {symbol} {values.span(result, name)}" for name, symbol in names]
             if period:
-                parts.append(f"period of D {result.number('D_period'):.4g}")
+                parts.append(f"period of D {values.of_summary(result, 'D_period')}")
             return ", ".join(parts)
         return each(done(results, figure), text)
     return seen
@@ -89,15 +88,16 @@ def calmer(figure, names, period=False):
 
 def against_viscosity_one(results):
     pairs = [(thick, thin) for thick in done(results, "fig08") for thin in done(results, "fig05") if thick.khat == thin.khat]
-    if not pairs:
-        return "not computed"
-    mean = lambda result, name: float(np.nanmean(result.series[name][result.series["time"] >= result.number("from")]))  # noqa: E731
-    return "; ".join(f"κ̂ = {a.khat:g}: mean D {mean(a, 'D_xz'):.4f} (ratio 1: {mean(b, 'D_xz'):.4f}), mean θ {mean(a, 'theta'):.4f} π ({mean(b, 'theta'):.4f} π)" for a, b in pairs)
+    lines = []
+    for thick, thin in pairs:
+        D, theta = ([values.mean(result, name) for result in (thick, thin)] for name in ("D", "theta"))
+        lines.append(f"κ̂ = {thick.khat:g}: mean D {D[0]} (ratio 1: {D[1]}), mean θ/π {theta[0]} ({theta[1]})")
+    return "; ".join(lines) or "not computed"
 
 
 def area(results):
     found = done(results, "fig09") + done(results, "fig11")
-    return each(found, lambda result: f"{100 * np.abs(result.series['area'] / result.series['area'][0] - 1).max():.2f} %")
+    return each(found, lambda result: f"{values.area_change(result)} %")
 
 
 STATEMENTS = [
@@ -106,13 +106,13 @@ STATEMENTS = [
     ("1", "Steps of 0.005 μa³/κ_B are stable, ten times those of an earlier boundary-integral method", step_lengths),
     ("all", "The volume changes by less than 0.03 %", volume),
     ("all", "96³ cells of 0.104 a in a box of 10 a, shell of 10242 nodes", resolution),
-    ("all", "The undisturbed velocity on z = ±5 a, periodic in x and y", lambda results: "the same conditions, box as above"),
+    ("all", "The undisturbed velocity on z = ±5 a, periodic in x and y", lambda results: "unbounded liquid"),
     ("3", "G = 0.05: with growing bending stiffness D falls and θ grows (κ̂ = 0, 0.01, 0.025, 0.0375)", falls_and_turns("fig03", 0.05)),
     ("3", "G = 0.2: the same (0, 0.04, 0.1, 0.15)", falls_and_turns("fig03", 0.2)),
     ("4", "Viscosity ratio 5, G = 0.05: the same (0, 0.01, 0.025, 0.0375)", falls_and_turns("fig04", 0.05)),
     ("5", "Oblate, G = 0.05: swinging for κ̂ = 0, 0.005, 0.01, 0.025", modes("fig05")),
     ("6", "Oblate, G = 0.005: tumbling for κ̂ = 0, 0.01, 0.02, 0.05", modes("fig06")),
-    ("6", "Stiffer bending makes D and the phase angle oscillate less", calmer("fig06", [("D_xz", "D"), ("delta", "δ/π")])),
+    ("6", "Stiffer bending makes D and the phase angle oscillate less", calmer("fig06", [("D", "D"), ("delta", "δ/π")])),
     ("7", "Oblate, G = 0.008, κ̂ = 0: swinging", modes("fig07", 0.0)),
     ("7", "κ̂ = 0.002: in transition from swinging to tumbling", modes("fig07", 0.002)),
     ("7", "κ̂ = 0.005: tumbling", modes("fig07", 0.005)),
@@ -120,7 +120,7 @@ STATEMENTS = [
     ("8", "swinging for κ̂ = 0, 0.005, 0.01, 0.025", modes("fig08")),
     ("9, 10", "Biconcave, Skalak, G = 0.5, viscosity ratio 2: swinging for κ̂ = 0, 0.01, 0.04; without bending the dimple vanishes", modes("fig09")),
     ("11, 12", "G = 0.1, viscosity ratio 4: tumbling where κ̂ > 0 (0, 0.01, 0.04)", modes("fig11")),
-    ("11", "Stiffer bending shortens the period and makes D oscillate less", calmer("fig11", [("D_xz", "D")], period=True)),
+    ("11", "Stiffer bending shortens the period and makes D oscillate less", calmer("fig11", [("D", "D")], period=True)),
     ("9–12", "The area changes by 0.5 to 1 %", area),
     ("9–12", "Biconcave shape with the coefficients 0.2072, 2.0026, −1.1228", lambda results: "the same shape, scaled to the volume of the unit sphere"),
 ]

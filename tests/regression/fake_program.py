@@ -4,7 +4,7 @@
 """Takes the program's command line, FILE.prm --set Section/Parameter=value ..., and leaves a folder like one of its own.
 
 The scenes of benchmarks/flows get their reference solution, read off at other times, in the frame of the box, with D larger by the factor 1 + (4/side)^3;
-those of benchmarks/work_precision a capsule whose D and intrinsic viscosity are too large by a tenth of the square of the finest cell; the rest a capsule whose D goes to 0.3.
+those of benchmarks/work_precision a capsule whose D and intrinsic viscosity are too large by a tenth of the square of the finest cell; the rest a capsule whose D goes to 0.3, wrong by a third of the target error; with a study there is a companion of four times the target and its table.
 """
 
 import math
@@ -40,11 +40,11 @@ def end_of(prm):
     return next(float(line.split("=")[1]) for line in prm.read_text().splitlines() if "End time" in line)
 
 
-def simple():
+def simple(target):
     """Rows of a capsule in shear."""
     for step in range(41):
         t = 0.25 * step
-        D = 0.3 * (1 - math.exp(-t))
+        D = 0.3 * (1 + target / 3) * (1 - math.exp(-t))
         yield {"time": t, "D_xz": D, "theta": 0.25 - 0.1 * D, "L": 1 + D, "B": 1 - D, "W": 1, "volume": 4.18, "area": 12.5 + D, "step": 0.25, "alpha": 0.1 * t,
                "delta": 0.1 * t, "intrinsic_viscosity": 2.5}
 
@@ -73,6 +73,14 @@ def circles(rows):
             yield {"time": row["time"], "x": row.get("x", 0) + math.cos(k * math.pi / 12), "z": row.get("z", 0) + math.sin(k * math.pi / 12)}
 
 
+def study(folder, target):
+    """The companion of a simple capsule, and what it says of the least value of D, which it has no error in."""
+    companion = folder / "study/target-1"
+    companion.mkdir(parents=True, exist_ok=True)
+    write(companion / "history.csv", COLUMNS, list(simple(4 * target)))
+    (folder / "study.csv").write_text("quantity,cause,value,error,order,order is observed,extrapolated\nD_minimum,target,0.2,0,1,0,0.2\n")
+
+
 def main():
     if sys.argv[1] in ("--print-parameters", "--version"):
         print(PARAMETERS if sys.argv[1] == "--print-parameters" else "Tanktread, a stand-in")
@@ -88,7 +96,7 @@ def main():
     elif prm.stem in REFINED and "Fluid mesh/Finest cell" in settings:
         rows = list(refined(float(settings["Fluid mesh/Finest cell"]), float(settings["Time/Step"]), end_of(prm)))
     else:
-        rows = list(simple())
+        rows = list(simple(float(settings.get("Accuracy/Target error", 0))))
     if prm.stem == "crossing_pair":
         second = [{**row, **{name: -row.get(name, 0) for name in ("x", "y", "z", "u_x", "u_y", "u_z")}} for row in rows]
         for i, capsule in enumerate((rows, second)):
@@ -99,6 +107,8 @@ def main():
         write(folder / "history.csv", COLUMNS, rows)
         write(folder / "contours.csv", ["time", "x", "z"], circles(rows))
     (folder / "summary.csv").write_text("quantity,value\noutcome,end time\nmode,steady\nfrom,0\n")
+    if "target" in settings.get("Study/Vary", ""):
+        study(folder, float(settings["Accuracy/Target error"]))
     (folder / "used_parameters.prm").write_text(prm.read_text())
     for i, row in enumerate(rows):
         print(i, f"{row['time']:g}", 0.1, 2, 10, f"{row['D_xz']:g}", 0.2, 0, 1)

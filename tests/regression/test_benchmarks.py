@@ -5,6 +5,7 @@
 
 import csv
 import json
+import math
 import os
 import pathlib
 import shutil
@@ -23,6 +24,7 @@ python_packages.need("numpy", "matplotlib")
 import numpy as np  # noqa: E402
 
 import plot_style  # noqa: E402, F401
+import report_parts  # noqa: E402
 import run_files  # noqa: E402
 import run_scenes  # noqa: E402
 
@@ -77,18 +79,44 @@ class Le2010(Repository):
 
     def test_doc_changes_where_it_was_asked_to(self):
         before = self.doc()
-        said = self.run_scenes("fig04", "fig06/G0.005_k0", "--quick", "--update-doc")
-        self.assertIn("fig04: stays as it is in doc/, which has G0.05_k0, G0.05_k0.01 at a finer resolution", said)
-        self.assertEqual(self.doc(), before)
         said = self.run_scenes("fig04", "fig06/G0.005_k0", "--full", "--update-doc")
         self.assertIn("fig06: stays as it is in doc/, not all of its runs are there", said)
         after = self.doc()
         changed = {name for name in {*before, *after} if before.get(name) != after.get(name)}
         self.assertEqual(changed, {"doc/le_2010.md", "doc/figures/le_2010/fig04.png"})
         old, new = (set(doc["doc/le_2010.md"].decode().splitlines()) for doc in (before, after))
-        self.assertTrue(any("| G0.05_k0.0375, full | steady | 10 | 0.29999" in line for line in new - old))
-        others = [line for line in old - new if not line.startswith(("| G0.05_k", "| 4 |"))]
+        self.assertTrue(any("| G0.05_k0.0375, full | steady, last values at 10 | 0.30009 ± 0.00030 |" in line for line in new - old))  # 0.3 (1 + 1e-3/3)
+        others = [line for line in old - new if not line.startswith(("| G0.05_k", "| 4 |", "| all |"))]
         self.assertEqual(others, [], "lines of other figures")
+        shutil.rmtree(self.root / "output")
+        said = self.run_scenes("fig04", "--quick", "--update-doc")
+        self.assertIn("fig04: stays as it is in doc/, which has G0.05_k0, G0.05_k0.01, G0.05_k0.025, G0.05_k0.0375 at a finer resolution", said)
+        self.assertEqual(self.doc(), after)
+
+    def test_error_bars_and_differences_from_the_reference(self):
+        self.run_scenes("fig04", "--fair")
+        report = (self.root / "output/le_2010/report.md").read_text()
+        wanted = 0.194632  # of the reference, from which the stand-in's 0.3 (1 + 1e-3)(1 - exp(-10)) is far
+        value, bar = 0.3003 * (1 - math.exp(-10)), 9e-4
+        self.assertIn(f"| G0.05_k0, fair | steady, last values at 10 | {value:.5f} ± {bar:.5f} ({100 * (value / wanted - 1):+.2f} %) |", report)
+        self.assertIn("| G0.05_k0.025, fair | steady, last values at 10 | 0.30029 ± 0.00090 | ", report)  # without a reference
+        self.assertIn("\n0 of the 4 differences in brackets that stand beside an error bar are within it.\n", report)
+        settings = json.loads((self.root / "output/le_2010/fair/fig04/G0.05_k0/run.json").read_text())["settings"]
+        self.assertEqual(settings, {"Accuracy/Target error": "3e-3", "Study/Vary": "target, stop"})
+
+    def test_a_study_is_computed_anew_or_goes_on(self):
+        self.run_scenes("fig04/G0.05_k0")
+        folder = self.root / "output/le_2010/quick/fig04/G0.05_k0"
+        record = json.loads((folder / "run.json").read_text())
+        self.assertIn("cpu_seconds", record)
+        (folder / "left").touch()
+        self.run_scenes("fig04/G0.05_k0")
+        self.assertFalse((folder / "left").exists())
+        (folder / "left").touch()
+        (folder / "run.json").unlink()  # as if it had been interrupted
+        self.run_scenes("fig04/G0.05_k0", "--resume")
+        self.assertTrue((folder / "left").exists())
+        self.assertNotIn("cpu_seconds", json.loads((folder / "run.json").read_text()))
 
     def test_resume_and_draw_compute_nothing(self):
         self.run_scenes("fig04")
@@ -335,7 +363,35 @@ class Snapshots(unittest.TestCase):
         self.assertEqual(np.argmax(colors), np.argmax(self.smooth["points"] @ snapshots.direction(*snapshots.LAMP)))
 
 
+class Values(unittest.TestCase):
+    def test_value_and_bar(self):
+        value = report_parts.Value
+        self.assertEqual(str(value(0.380239, 0.00031234, 0.38)), "0.38024 ± 0.00031 (+0.06 %)")
+        self.assertEqual(str(value(2.29148, 0.027)), "2.291 ± 0.027")
+        self.assertEqual(str(value(0.0059, 0.00002, 0.00588)), "0.005900 ± 0.000020 (+0.00002)")
+        self.assertEqual(str(value(0.380239)), "0.38024")
+        self.assertEqual(str(value(math.nan, 1.)), "–")
+        self.assertTrue(value(1., 0.1, 1.05).is_within_bar)
+        self.assertFalse(value(1., 0.1, 1.15).is_within_bar)
+        self.assertFalse(value(1., math.nan, 1.15).is_compared)
+
+
 class Files(unittest.TestCase):
+    def test_largest_differences_of_curves(self):
+        times = np.linspace(0, 6, 121)
+        series = lambda D, theta: {"time": times, "D": D, "theta": theta}  # noqa: E731
+        D, theta = 0.2 + 0.05 * np.cos(times), 0.45 + 0.1 * np.sin(times)  # passes 1/2, where the angle jumps
+        theta -= theta > 0.5
+        of_D, of_theta = run_files.largest_differences(series(D * 1.01, theta), series(D, theta))
+        self.assertAlmostEqual(of_D, 0.01, places=12)
+        self.assertAlmostEqual(of_theta, 0, places=12)
+        coarse = {name: column[::7] for name, column in series(D, theta).items()}
+        of_D, of_theta = run_files.largest_differences(series(D, theta + 0.003), coarse)
+        self.assertAlmostEqual(of_D, 0, places=12)
+        self.assertAlmostEqual(of_theta, 0.003, places=12)
+        early = {name: column[:61] for name, column in series(D, theta).items()}
+        self.assertAlmostEqual(run_files.largest_differences(early, series(np.where(times > 3, 1, D), theta))[0], 0, places=12)
+
     def test_cubics_are_met(self):
         times = np.array([0, 0.1, 0.3, 0.4, 0.8, 1.0, 1.1])
         cubic = lambda t: 1 - 2 * t + 3 * t**2 - 4 * t**3  # noqa: E731
