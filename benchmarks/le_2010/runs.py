@@ -24,10 +24,14 @@ def described(resolution):
 
 
 def settings(run, resolution):
-    """What is set beside the parameter file: the target, and the study that tells the error bars. Spheres in shear have a steady state, whose bar counts too."""
+    """What is set beside the parameter file: the target, and the study that tells the error bars. Spheres in shear have a steady state, whose bar counts too; runs
+    with fixed steps show what these do, which no companion can tell."""
     parameters = run.parameters()
+    target = {"Accuracy/Target error": RESOLUTIONS[resolution]}
+    if "Time/Step" in parameters:
+        return target
     is_steady = parameters.get("Scene/Flow", "shear") == "shear" and parameters.get("Capsule/Shape", "sphere") == "sphere"
-    return {"Accuracy/Target error": RESOLUTIONS[resolution], "Study/Vary": "target, stop" if is_steady else "target"}
+    return {**target, "Study/Vary": "target, stop" if is_steady else "target"}
 
 
 def figure_names():
@@ -82,7 +86,7 @@ class Result:
         self.resolution, self.folder, self.record = None, None, None
         for resolution in RESOLUTIONS:  # from coarse to fine
             found = run.record(resolution)
-            if found and "Study/Vary" in found["settings"] and (self.record is None or found["exit_code"] == 0 or self.record["exit_code"] != 0):
+            if found and "Accuracy/Target error" in found["settings"] and (self.record is None or found["exit_code"] == 0 or self.record["exit_code"] != 0):
                 self.resolution, self.folder, self.record = resolution, run.folder(resolution), found
         self.series, self.companion, self.summary, self.bars, self.chosen, self.contours = {}, {}, {}, {}, {}, []
         if self.record is not None and self.record["exit_code"] != 1:

@@ -45,12 +45,14 @@ def volume(results):
 
 def resolution(results):
     """Cells and control points at each target."""
+    def span(numbers):
+        return " to ".join(f"{number:.3g}" for number in sorted({min(numbers), max(numbers)}))
     found = {}
     for result in results.runs.values():
         if result.series:
             cell, level = (run_files.number(result.chosen.get(name, "nan")) for name in ("Fluid mesh/Finest cell", "Shell mesh/Level"))
             found.setdefault(result.record["settings"]["Accuracy/Target error"], []).append((cell, 10 * 4**level + 2))
-    words = [f"target {target}: {len(chosen)} runs, cells of {min(chosen)[0]:.2g} to {max(chosen)[0]:.2g} a, {min(n for _, n in chosen):g} to {max(n for _, n in chosen):g} control points"
+    words = [f"target {target}: {len(chosen)} runs, cells of {span([h for h, _ in chosen])} a, {span([n for _, n in chosen])} control points"
              for target, chosen in sorted(found.items(), key=lambda item: float(item[0]))]
     return "; ".join(words) or "not computed"
 
