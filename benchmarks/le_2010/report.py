@@ -81,7 +81,7 @@ Each run is shown at the finest of them at which it was done. The paper has wall
 
 **Error bars** are those of a study (`theory.md`, section 8.4): the difference from a companion of four times the target, for limits also the bar of the limit. "Whole run" is the same for the curve of D, at all times and relative to its largest value, and of θ/π, weighted with
 D over its largest value. In brackets, and as dashed curves, are differences from the boundary-integral solutions of `benchmarks/reference`: of limits from the last row of the solution, of extremes and periods from its own, of curves the largest at any time. Where there is no
-bracket there is no such solution. A membrane that wrinkles converges to nothing: its bars say little. Motion, periods and frequencies are judged by the rule of `theory.md`, section 8.2; means are over whole periods of D. CPU seconds are of one run with its companion. Runs with fixed steps, in fig. 1, have none, since it could not tell what the steps do.
+bracket there is no such solution. A companion may agree with its run by chance, where errors of several causes cancel; below each table stands how many bars hold. A membrane that wrinkles converges to nothing: its bars say little. Motion, periods and frequencies are judged by the rule of `theory.md`, section 8.2; means are over whole periods of D. CPU seconds are of one run with its companion. Runs with fixed steps, in fig. 1, have none, since it could not tell what the steps do.
 
 In shear, bending has the form `moment-only`, the paper's.
 
