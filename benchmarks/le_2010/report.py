@@ -76,12 +76,18 @@ This page is written by
 
     benchmarks/le_2010/run.py [--quick | --fair | --full] --update-doc
 
-from the results that it finds. The parameter files, in `benchmarks/le_2010`, hold physics and times; cells, control mesh, steps and tolerances are chosen by the dial (`accuracy.md`) for the largest relative error of D that is wanted: {resolutions}.
+from the results that it finds. The parameter files, in `benchmarks/le_2010`, hold physics and times; cells, control mesh, steps and tolerances are chosen by the dial (`accuracy.md`) for the largest
+relative error of D that is wanted: {resolutions}.
 Each run is shown at the finest of them at which it was done. The paper has walls at z = ±5a and is periodic along x and y; here the liquid is unbounded (`theory.md`, section 3.4).
 
-**Error bars** are those of a study (`theory.md`, section 8.4): the difference from a companion of four times the target, for limits also the bar of the limit. "Whole run" is the same for the curve of D, at all times and relative to its largest value, and of θ/π, weighted with
-D over its largest value. In brackets, and as dashed curves, are differences from the boundary-integral solutions of `benchmarks/reference`: of limits from the last row of the solution, of extremes and periods from its own, of curves the largest at any time. Where there is no
-bracket there is no such solution. A companion may agree with its run by chance, where errors of several causes cancel; below each table stands how many bars hold. A membrane that wrinkles converges to nothing: its bars say little. Motion, periods and frequencies are judged by the rule of `theory.md`, section 8.2; means are over whole periods of D. CPU seconds are of one run with its companion. Runs with fixed steps, in fig. 1, have none, since it could not tell what the steps do.
+**Error bars** are those of a study (`theory.md`, section 8.4): the difference from a companion of four times the target, for limits also the bar of the limit. "Whole run" is the same for
+the curve of D, at all times and relative to its largest value, and of θ/π, weighted with D over its largest value. A companion may agree with its run by chance, where errors of several causes
+cancel; below each table stands how many bars hold. A membrane that wrinkles converges to nothing: its bars say little. Runs with fixed steps, in fig. 1, have no bars, since a companion could not tell
+what the steps do.
+
+In brackets, and as dashed curves, are differences from the boundary-integral solutions of `benchmarks/reference`: of limits from the last row of the solution, of extremes and periods from its own,
+of curves the largest at any time. Where there is no bracket there is no such solution. Motion, periods and frequencies are judged by the rule of `theory.md`, section 8.2; means are over whole periods
+of D. CPU seconds are of one run with its companion.
 
 In shear, bending has the form `moment-only`, the paper's.
 
