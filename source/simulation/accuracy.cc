@@ -156,7 +156,10 @@ namespace tanktread
     }
 
 
-    /** Cells for a box that is given: coarsest ones of 1.8 a to 3.6 a, unless they are given too, whose octree has a size near h. */
+    /**
+     * Cells for a box that is given, whose octree has a size near h: coarsest ones, unless they are given too, of 1.8 a to 3.6 a, or a power of two times that in
+     * boxes eight times as large. Near the shell 2:1 balance makes them smaller.
+     */
     Cells
     given_box(const Parameters &parameters, const double h, const bool coarsest_is_set)
     {
@@ -164,14 +167,19 @@ namespace tanktread
       Cells        best{side, parameters.fluid_mesh.coarsest_cell, octree_cell(parameters, parameters.fluid_mesh.coarsest_cell, h)};
       if (coarsest_is_set)
         return best;
-      for (double n = std::ceil(side / 3.6); n <= side / 1.8; ++n)
+      const Box box     = parameters.scene.box();
+      double    largest = 3.6;
+      while (8. * largest <= *std::min_element(box.side.begin(), box.side.end()))
+        largest *= 2.;
+      for (double n = std::ceil(side / largest); n <= 2. * side / largest; ++n)
         try
           {
             FluidMeshParameters mesh = parameters.fluid_mesh;
             mesh.coarsest_cell       = side / n;
             mesh.finest_cell         = std::min(mesh.finest_cell, mesh.coarsest_cell);
-            mesh.check(parameters.scene.box());
-            if (const double finest = octree_cell(parameters, side / n, h); finest > best.finest)
+            mesh.check(box);
+            const double finest = octree_cell(parameters, side / n, h), gain = std::log2(finest / best.finest);
+            if (gain > 1e-9 || (gain > -1e-9 && side / n > best.coarsest)) // of octrees with the same finest cell that with the largest ones
               best = {side, side / n, finest};
           }
         catch (const InputError &)

@@ -109,6 +109,23 @@ TEST(Accuracy, CellsFitABoxThatIsGiven)
 }
 
 
+TEST(Accuracy, CellsOfLargeBoxesAreLarger)
+{
+  // Far away 2:1 balance lets cells grow: what there is of them does not grow with the volume of the box.
+  for (const double side : {20., 40., 80., 160.})
+    for (const std::string error : {"1e-2", "3e-3", "1e-3"})
+      {
+        const Parameters   p        = read({target(error), "Scene/Box side=" + std::to_string(side)});
+        const BoxDivision  division = divide(p.scene.box(), p.fluid_mesh.coarsest_cell);
+        const unsigned int n        = division.n_rung_0[0] << division.coarsest_level;
+        EXPECT_GE(n, 4u) << side << ", " << error;
+        EXPECT_LE(n, 12u) << side << ", " << error;
+      }
+  const Parameters flat = read({target("1e-2"), "Scene/Box side=80, 80, 10"}); // a channel: by its height
+  EXPECT_LE(flat.fluid_mesh.coarsest_cell, 3.6);
+}
+
+
 TEST(Accuracy, ASmallerTargetIsFinerInEverything)
 {
   std::map<std::string, double> before;
