@@ -9,7 +9,9 @@
 //   sphere2, sphere4   sphere off the centre, tractions of degree 2 and 4; error against the exact flow in unbounded liquid
 //   ellipsoid          2:1:1, tilted; smooth traction (waves)
 //   biconcave          biconcave disk, tilted; smooth traction
-//   steady             sphere sheared at G = 0.2, khat = 0.04 until it is nearly steady; smooth traction (waves)
+//   ellipsoid3, oblate 3:1:1, and a spheroid 0.4 times as high as wide, tilted; smooth traction (waves)
+//   steady, soft       sphere sheared at G = 0.2, khat = 0.04 or 0, until it is nearly steady; smooth traction (waves)
+//   ellipsoid_tension, ellipsoid3_tension, oblate_tension, biconcave_tension, steady_tension, soft_tension   the same shapes with the forces of a uniform tension
 //   periodic           sphere in the edge of a box of 10a, cut into four by the periodic faces; traction of degree 2
 // Errors of all but the first two are differences from two finer meshes, 10a/128 and 10a/256 (enriched, graded), extrapolated with second order on the same
 // control mesh; with each control
@@ -17,11 +19,9 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <oracle/given_forces.h>
 #include <tanktread/base/mpi_errors.h>
-#include <tanktread/surface/triangle_mesh.h>
 
-#include "capsule_scene.h"
+#include "force_problems.h"
 #include "measurement.h"
 
 #include <sys/resource.h>
@@ -77,101 +77,6 @@ namespace
   }
 
 
-  /** The same limit surface with control points four times as many, `times` times. */
-  FittedShape
-  refined(const FittedShape &coarse, const unsigned int times)
-  {
-    TriangleMesh mesh = coarse.topology;
-    for (Eigen::Index i = 0; i < coarse.control_points.rows(); ++i)
-      mesh.vertices[i] = coarse.control_points.row(i);
-    for (unsigned int n = 0; n < times; ++n)
-      mesh = loop_refine(mesh);
-    FittedShape result{mesh, ControlPoints(mesh.vertices.size(), 3)};
-    for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
-      result.control_points.row(i) = mesh.vertices[i];
-    return result;
-  }
-
-
-  /** A sphere that has been sheared for a while; control mesh of level 2. */
-  FittedShape
-  nearly_steady_sphere()
-  {
-    Scene    scene(sheared_sphere(32), MPI_COMM_WORLD);
-    Stepping stepping(scene, 0.2);
-    while (stepping.time() < 6. - 1e-9)
-      stepping.step();
-    return {scene.capsule().topology(), stepping.state().capsules[0].x};
-  }
-
-
-  /** A scene on one control mesh: the shape, where it is, and the nodal forces. */
-  struct Problem
-  {
-    FittedShape                                       shape;
-    Eigen::RowVector3d                                centre = {0.013, 0.031, -0.022};
-    double                                            box;
-    int                                               degree = 0; // of the traction, if the flow is known
-    std::function<ControlPoints(const GivenForces &)> forces;
-  };
-
-
-  CapsuleShapeParameters
-  tilted(const Shape shape, const double inclination)
-  {
-    CapsuleShapeParameters result;
-    result.shape       = shape;
-    result.axes        = {{2., 1., 1.}};
-    result.inclination = inclination;
-    return result;
-  }
-
-
-  /** Waves without a total force. */
-  ControlPoints
-  smooth_forces(const GivenForces &scene)
-  {
-    ControlPoints            f    = oracle::waves(scene.X(), 1.5);
-    const Eigen::RowVector3d mean = scene.weights().transpose() * f / scene.weights().sum();
-    f.rowwise() -= mean;
-    return scene.nodal_forces(f);
-  }
-
-
-  Problem
-  make_problem(const std::string &name, const unsigned int level, const double box)
-  {
-    Problem result;
-    result.box = box;
-    if (name == "ellipsoid" || name == "biconcave")
-      {
-        result.shape  = make_capsule(name == "ellipsoid" ? tilted(Shape::ellipsoid, 0.15) : tilted(Shape::biconcave, 0.2), level);
-        result.forces = smooth_forces;
-      }
-    else if (name == "steady")
-      {
-        static const FittedShape capsule = nearly_steady_sphere();
-        result.shape                     = refined(capsule, level - 2);
-        result.forces                    = smooth_forces;
-      }
-    else
-      {
-        result.shape  = make_capsule({}, level);
-        result.degree = name == "sphere4" ? 4 : 2;
-        if (name == "periodic")
-          {
-            result.box    = 10.;
-            result.centre = {5.013, 5.031, -0.022};
-          }
-        const int degree = result.degree;
-        result.forces    = [degree](const GivenForces &scene) { return scene.nodal_forces(oracle::exact_on_sphere(scene.X(), scene.centre(), degree).first); };
-        if (name == "periodic")
-          result.degree = 0;
-      }
-    return result;
-  }
-
-
   /** What the errors on one control mesh are measured against. */
   struct Reference
   {
@@ -213,7 +118,7 @@ namespace
 
 
   const char *const header =
-    "scene,interface,cells,level,fluid_cells,points,error,power_error,reference_error,iterations,solve_cpu,geometry_cpu,stokes_cpu,mesh_cpu,box,coarsest,band,grading,boundary";
+    "scene,interface,cells,level,fluid_cells,points,error,power_error,reference_error,iterations,solve_cpu,geometry_cpu,stokes_cpu,mesh_cpu,box,coarsest,band,grading,boundary,radius,curved_share";
 
 
   /** One line of the table. */
@@ -244,13 +149,15 @@ namespace
       solve_fgmres(scene.fluid.stokes(), scene.fluid.preconditioner(), fields, load, 1e-6, 200);
     });
 
-    const double power = F.cwiseProduct(flow.velocity[0]).sum();
-    double       error, wanted_power, reference_error = 0.;
+    const double  power = F.cwiseProduct(flow.velocity[0]).sum();
+    double        error, wanted_power, reference_error = 0.;
+    ControlPoints at_points = scene.coupling_surface.S() * flow.velocity[0];
     if (problem.degree > 0)
       {
         const auto [traction, exact] = oracle::exact_on_sphere(scene.X(), scene.centre(), problem.degree);
-        error                        = scene.difference_at_points(scene.coupling_surface.S() * flow.velocity[0], exact);
-        wanted_power                 = traction.cwiseProduct(exact).rowwise().sum().dot(scene.weights());
+        error                        = scene.difference_at_points(at_points, exact);
+        at_points -= exact;
+        wanted_power = traction.cwiseProduct(exact).rowwise().sum().dot(scene.weights());
       }
     else
       {
@@ -258,11 +165,14 @@ namespace
         error                   = scene.difference(flow.velocity[0], wanted.velocity);
         wanted_power            = wanted.power;
         reference_error         = wanted.estimate;
+        at_points -= scene.coupling_surface.S() * wanted.velocity;
       }
+    const OfCurvature curvature = of_curvature(scene, at_points.rowwise().squaredNorm());
     std::cout << name << ',' << interface << ',' << cells << ',' << level << ',' << scene.fluid.mesh().triangulation().n_global_active_cells() << ','
               << scene.coupling_surface.n_points() << ',' << error << ',' << power / wanted_power - 1. << ',' << reference_error << ',' << flow.iterations
               << ',' << solve_cpu << ',' << geometry_cpu << ',' << stokes_cpu << ',' << mesh_cpu << ',' << problem.box << ',' << options.coarsest << ','
-              << options.band << ',' << options.grading << ',' << (options.unbounded ? "unbounded" : "faces") << std::endl;
+              << options.band << ',' << options.grading << ',' << (options.unbounded ? "unbounded" : "faces") << ',' << curvature.radius << ','
+              << curvature.curved_share << std::endl;
   }
 
 
@@ -307,8 +217,12 @@ namespace
   Options
   parse(const std::vector<std::string> &words)
   {
-    Options    options;
-    const auto names = options.scenes;
+    Options options;
+    auto    names = options.scenes;
+    for (const std::string name : {"ellipsoid3", "oblate", "soft"})
+      names.push_back(name);
+    for (const std::string name : {"ellipsoid", "ellipsoid3", "oblate", "biconcave", "steady", "soft"})
+      names.push_back(name + "_tension");
     for (std::size_t i = 0; i + 1 < words.size(); i += 2)
       {
         const std::string &name = words[i], &value = words[i + 1];
@@ -339,7 +253,7 @@ namespace
       throw InputError("Option '" + words.back() + "' has no value.");
     for (const std::string &scene : options.scenes)
       if (std::find(names.begin(), names.end(), scene) == names.end())
-        throw InputError("--scenes: got '" + scene + "'; allowed: sphere2, sphere4, ellipsoid, biconcave, steady, periodic.");
+        throw InputError("--scenes: got '" + scene + "'; allowed: those in the first lines of interface_study.cc.");
     for (const std::string &interface : options.interfaces)
       if (interface != "plain" && interface != "enriched")
         throw InputError("--interfaces: got '" + interface + "'; allowed: plain, enriched.");
