@@ -30,9 +30,10 @@ namespace tanktread
     constexpr double cells_factor = 0.045, cells_order = 3.;                   // one viscosity
     constexpr double contrast_factor = 0.035, contrast_order = 2.;              // two
     constexpr double control_mesh_at_level_1 = 0.011, control_mesh_gain = 20.; // a level
-    constexpr double steps_factor  = 1.2;                                      // error of D over Time/Tolerance
-    constexpr double newton_factor = 0.1;                                      // over Solver/Newton tolerance
-    constexpr double faces_factor  = 8.;                                       // over (a/l)^3
+    constexpr double steps_factor       = 1.2;                                 // error of D over Time/Tolerance
+    constexpr double newton_factor      = 0.1;                                 // over Solver/Newton tolerance
+    constexpr double ungraded_far_cells = 1e-4, graded_far_cells = 2e-5;       // cells away from the shell, Fluid mesh/Grading = 0 and 3
+    constexpr double faces_factor = 8.;                                        // over (a/l)^3
 
 
     std::string
@@ -290,6 +291,8 @@ namespace tanktread
         choose("Fluid mesh", "Coarsest cell", number(cells.coarsest));
         choose("Fluid mesh", "Finest cell", number(std::min(1.0001 * cells.finest, cells.coarsest)));
       }
+    if (ungraded_far_cells > 0.5 * of_cells * target)
+      choose("Fluid mesh", "Grading", "3");
     if (parameters.capsule.shape != Shape::file)
       {
         // Where a membrane without bending stiffness is compressed it wrinkles, on a finer control mesh the more.
@@ -325,6 +328,7 @@ namespace tanktread
         const double order = cells_error(parameters, h) > cells_factor * std::pow(h, cells_order) ? contrast_order : cells_order;
         result.push_back({"cells", cells_error(parameters, h), std::pow(2., 2.3 / order)});
       }
+    result.push_back({"cells away from the shell", parameters.fluid_mesh.grading < 3 ? ungraded_far_cells : graded_far_cells, 1.2});
     if (parameters.capsule.shape != Shape::file)
       result.push_back({"control mesh", control_mesh_error(parameters, parameters.shell_mesh.level), 1.2});
     if (parameters.time.tolerance > 0. && std::isfinite(factor_of_scheme(parameters)))

@@ -126,6 +126,16 @@ TEST(Accuracy, CellsOfLargeBoxesAreLarger)
 }
 
 
+TEST(Accuracy, GradesTheMeshWhereFarCellsCount)
+{
+  EXPECT_EQ(read({target("1e-3")}).fluid_mesh.grading, 0u);
+  EXPECT_EQ(read({target("3e-4")}).fluid_mesh.grading, 3u);
+  EXPECT_EQ(read({target("3e-4"), "Fluid mesh/Grading=1"}).fluid_mesh.grading, 1u);
+  EXPECT_GT(error_of(read({target("3e-4"), "Fluid mesh/Grading=1"}), "cells away from the shell"),
+            error_of(read({target("3e-4")}), "cells away from the shell"));
+}
+
+
 TEST(Accuracy, ASmallerTargetIsFinerInEverything)
 {
   std::map<std::string, double> before;
