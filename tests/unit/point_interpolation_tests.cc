@@ -227,15 +227,16 @@ TEST(PointInterpolation, AgreesWithDealiiAtHangingNodesAndPeriodicFaces)
   const auto             u     = nodal_velocity(space, Waves(side));
   PointInterpolation     interpolation(space);
   interpolation.reinit(probes());
-  std::vector<double> values, gradients;
+  std::vector<double> values, gradients, laplacians;
   interpolation.values_and_gradients(u, values, gradients);
+  interpolation.laplacians(u, laplacians);
 
   const ScalarSpace              scalar(space.mesh, 2, true);
   const auto                    &dofs   = scalar.dofs();
   const std::vector<FluidVector> fields = in_dealii_numbering(space, scalar, u);
 
   const auto &mapping = dealii::StaticMappingQ1<3>::mapping;
-  double      error = 0., gradient_error = 0., size = 0.;
+  double      error = 0., gradient_error = 0., laplacian_error = 0., size = 0.;
   for (unsigned int r = 0; r < interpolation.local_points().size(); ++r)
     {
       Point x = probes()[interpolation.local_points()[r]];
@@ -248,12 +249,15 @@ TEST(PointInterpolation, AgreesWithDealiiAtHangingNodesAndPeriodicFaces)
       dealii::FEValues<3> shapes(mapping,
                                  dofs.get_fe(),
                                  dealii::Quadrature<3>(mapping.transform_real_to_unit_cell(cell, x)),
-                                 dealii::update_values | dealii::update_gradients);
+                                 dealii::update_values | dealii::update_gradients | dealii::update_hessians);
       shapes.reinit(cell);
       for (unsigned int c = 0; c < 3; ++c)
         {
           std::vector<double>               value(1);
           std::vector<dealii::Tensor<1, 3>> slope(1);
+          std::vector<double>               laplacian(1);
+          shapes.get_function_laplacians(fields[c], laplacian);
+          laplacian_error = std::max(laplacian_error, std::abs(laplacians[3 * r + c] - laplacian[0]));
           shapes.get_function_values(fields[c], value);
           shapes.get_function_gradients(fields[c], slope);
           size  = std::max(size, std::abs(value[0]));
@@ -265,6 +269,7 @@ TEST(PointInterpolation, AgreesWithDealiiAtHangingNodesAndPeriodicFaces)
   EXPECT_GT(size, 0.5);
   EXPECT_LT(error, 1e-12);
   EXPECT_LT(gradient_error, 1e-11);
+  EXPECT_LT(laplacian_error, 1e-9);
 
   std::vector<double> again;
   interpolation.values(u, again);
