@@ -28,7 +28,8 @@ namespace tanktread
 
     // The model: doc/accuracy.md, "The dial". Errors are relative to the largest D; h in a.
     constexpr double cells_factor = 0.045, cells_order = 3.;                   // one viscosity
-    constexpr double contrast_factor = 0.035, contrast_order = 2.;              // two
+    constexpr double contrast_factor = 0.035, contrast_order = 2.;             // two, up to lambda = 5; more beyond
+    constexpr double stiff_exponent          = 0.7;                            // of lambda/5
     constexpr double control_mesh_at_level_1 = 0.011, control_mesh_gain = 20.; // a level
     constexpr double steps_factor       = 1.2;                                 // error of D over Time/Tolerance
     constexpr double newton_factor      = 0.1;                                 // over Solver/Newton tolerance
@@ -63,10 +64,17 @@ namespace tanktread
 
 
     double
+    factor_of_contrast(const Parameters &parameters)
+    {
+      return contrast_factor * std::pow(std::max(1., parameters.scene.viscosity_ratio / 5.), stiff_exponent);
+    }
+
+
+    double
     cells_error(const Parameters &parameters, const double h)
     {
       const double uniform = cells_factor * std::pow(h, cells_order);
-      return has_contrast(parameters) ? std::max(uniform, contrast_factor * std::pow(h, contrast_order)) : uniform;
+      return has_contrast(parameters) ? std::max(uniform, factor_of_contrast(parameters) * std::pow(h, contrast_order)) : uniform;
     }
 
 
@@ -100,7 +108,7 @@ namespace tanktread
       const double error = of_cells * parameters.accuracy.target_error;
       double       h     = std::pow(error / cells_factor, 1. / cells_order);
       if (has_contrast(parameters))
-        h = std::min(h, std::pow(error / contrast_factor, 1. / contrast_order));
+        h = std::min(h, std::pow(error / factor_of_contrast(parameters), 1. / contrast_order));
       const double unit = std::pow(10., std::floor(std::log10(h)) - 2.);
       return unit * std::floor(h / unit);
     }
