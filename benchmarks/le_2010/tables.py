@@ -22,7 +22,7 @@ def short(result):
 def whole_run(result, reference):
     """Two cells: bar over the whole run, and largest difference from the reference."""
     shown = lambda value, is_angle: show(value) if math.isnan(value) else f"{value:.5f}" if is_angle else f"{100 * value:.2g} %"  # noqa: E731
-    return [f"± {shown(bar, k == 1)}" + ("" if math.isnan(error) else f" ({shown(error, k == 1)})") for k, (bar, error) in enumerate(values.largest_differences(result, reference))]
+    return [f"± {shown(bar, k == 1)}" + ("" if math.isnan(error) else f" ({shown(error, k == 1)})") for k, (bar, error) in enumerate(values.whole_run(result, reference))]
 
 
 def compared(rows):

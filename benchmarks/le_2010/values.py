@@ -2,8 +2,8 @@
 # Part of Tanktread: numbers of the runs with their error bars.
 """Numbers of a run (Result) as report_parts.Value: with error bar, and that of the reference solution.
 
-The bar of a target is the difference from the companion of four times the target (doc/theory.md, (52c): r = 4, p = 1, three times |q - q0|). The program gives
-it for the numbers of its summary; here it is taken in the same way for what is read off the series: values at a time, means, differences over a whole run.
+Bars are those of the run's study (doc/theory.md, section 8.4): of the numbers of its summary, and of whole curves ("D_curve"), which hold for values at a given time.
+Only for what the program has no bars of, the difference from the companion stands in.
 """
 
 import math
@@ -19,41 +19,35 @@ def value_at(series, column, time):
     return run_files.interpolated(series["time"], series[column], time) if column in series else math.nan
 
 
+def bar_of_curve(result, column, time):
+    """Of theta/pi the curve's bar is weighted with D over its largest value."""
+    bar = result.bars.get((f"{column}_curve", "target"), math.nan)
+    return bar * np.nanmax(result.series["D"]) / value_at(result.series, "D", time) if column == "theta" else bar
+
+
 def at(result, column, time, reference=math.nan):
-    value = value_at(result.series, column, time)
-    return Value(value, abs(value - value_at(result.companion, column, time)), reference)
+    return Value(value_at(result.series, column, time), bar_of_curve(result, column, time), reference)
 
 
 def last(result, column, reference=math.nan):
-    """Run and companion end at the same time."""
     return at(result, column, result.series["time"][-1], reference)
 
 
 def limit(result, name, column, reference=math.nan):
-    """The limit, or the last value of a run that has none. Where only the companion has none, last values tell the bar of the target."""
-    value, end = result.number(f"{name}_limit"), last(result, column, reference)
+    """The limit, with the bars of the stop and the target, or the last value of a run that has none."""
+    value = result.number(f"{name}_limit")
     if math.isnan(value):
-        return end
-    stop, target = (result.bars.get((f"{name}_limit", cause), math.nan) for cause in ("stop", "target"))
-    return Value(value, stop + (end.bar if math.isnan(target) else target), reference)
+        return last(result, column, reference)
+    return Value(value, sum(result.bars.get((f"{name}_limit", cause), math.nan) for cause in ("stop", "target")), reference)
 
 
 def of_summary(result, name, reference=math.nan):
     return Value(result.number(name), result.bars.get((name, "target"), math.nan), reference)
 
 
-def whole_periods(result):
-    """Start and end of as many periods of D as there are since the motion can be judged, or of what there is."""
-    start, end, period = result.number("from"), result.series["time"][-1], result.number("D_period")
-    start = 0 if math.isnan(start) else start
-    return (start, start + period * math.floor((end - start) / period)) if period <= end - start else (start, end)
-
-
 def mean(result, column):
-    """Over whole periods, by cubics, since the steps differ in length."""
-    times = np.linspace(*whole_periods(result), 4001)
-    value, other = (float(np.nanmean(value_at(series, column, times))) if series else math.nan for series in (result.series, result.companion))
-    return Value(value, abs(value - other))
+    """Over whole periods of D since the motion can be judged."""
+    return of_summary(result, f"{column}_mean")
 
 
 def span(result, column):
@@ -70,7 +64,8 @@ def area_change(result):
     return Value(value, abs(value - other))
 
 
-def largest_differences(result, reference):
-    """((of D from the companion, from the reference), (of theta/pi ...)) over the whole run, as run_files.largest_differences(); NaN where there is none."""
-    bars, errors = (run_files.largest_differences(result.series, wanted) if wanted else (math.nan, math.nan) for wanted in (result.companion, reference))
-    return list(zip(bars, errors))
+def whole_run(result, reference):
+    """((bar of D, largest difference from the reference), (of theta/pi ...)) over the whole run, D relative to its largest value; NaN where there is none."""
+    bar = lambda name: result.bars.get((f"{name}_curve", "target"), math.nan)  # noqa: E731
+    errors = run_files.largest_differences(result.series, reference) if reference else (math.nan, math.nan)
+    return list(zip((bar("D") / np.nanmax(result.series["D"]), bar("theta")), errors))

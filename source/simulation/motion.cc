@@ -3,6 +3,7 @@
 
 #include <tanktread/simulation/energy_balance.h>
 #include <tanktread/simulation/motion.h>
+#include <tanktread/simulation/time_interpolation.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,8 @@ namespace tanktread
   namespace
   {
     const double nan = std::numeric_limits<double>::quiet_NaN();
+
+    constexpr unsigned int n_of_mean = 2000; // intervals that a mean is taken over
 
     using Samples = std::vector<MotionSample>;
     using Member  = double MotionSample::*;
@@ -151,6 +154,35 @@ namespace tanktread
     }
 
 
+    /** By cubics, since steps differ in length; not numbers where a sample is not, or for fewer than four samples. */
+    MotionMeans
+    means(const Samples &samples, const double from, const double end)
+    {
+      if (samples.size() < 4 || !(end > from))
+        return {};
+      std::vector<double> times;
+      Eigen::MatrixXd     values(samples.size(), 5);
+      for (const MotionSample &s : samples)
+        {
+          values.row(times.size()) << s.D, s.theta, s.intrinsic_viscosity, s.N1, s.N2;
+          times.push_back(s.time);
+        }
+      Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(values.cols());
+      for (unsigned int n = 0; n <= n_of_mean; ++n)
+        sum += (n == 0 || n == n_of_mean ? 0.5 : 1.) * interpolated(times, values, from + (end - from) * n / n_of_mean);
+      sum /= n_of_mean;
+      return {sum[0], sum[1], sum[2], sum[3], sum[4]};
+    }
+
+
+    /** As many whole periods as there are in a time, or all of it. */
+    double
+    whole_periods(const double time, const double period)
+    {
+      return time >= period ? period * std::floor(time / period) : time;
+    }
+
+
     /** "\n  In the limit D_xz 0.3802 +- 0.0002, ...", nothing without limits. */
     std::string
     limits_text(const MotionLimits &limits)
@@ -217,6 +249,7 @@ namespace tanktread
     const Range theta = range(samples, first, &MotionSample::theta);
     s.theta_minimum   = theta.low;
     s.theta_maximum   = theta.high;
+    s.means           = means(samples, s.from, s.from + whole_periods(s.end - s.from, s.D_period));
     s.D_last          = samples.back().D;
     s.theta_last      = samples.back().theta;
     s.limits          = motion_limits(samples);

@@ -3,6 +3,7 @@
 
 #include <Eigen/QR>
 #include <tanktread/simulation/relaxation_limit.h>
+#include <tanktread/simulation/time_interpolation.h>
 
 #include <algorithm>
 #include <stdexcept>
@@ -23,32 +24,6 @@ namespace tanktread
     constexpr double       at_rest        = 0.01; // of the run's range: what moves less than this has come to rest
     constexpr double       widest         = 0.1;  // bar, of the run's range
     constexpr double       rank_threshold = 1e-8; // columns of the least squares problem that depend on the others to this are left out
-
-
-    /** Row index of the last time that is not after `time`. */
-    Index
-    interval(const std::vector<double> &times, const double time)
-    {
-      return std::max<Index>(0, std::upper_bound(times.begin(), times.end(), time) - times.begin() - 1);
-    }
-
-
-    /** Values at `time`, by the cubic through the four samples around it. */
-    Eigen::RowVectorXd
-    interpolated(const std::vector<double> &times, const MatrixXd &values, const double time)
-    {
-      const Index        first  = std::min(std::max<Index>(interval(times, time) - 1, 0), values.rows() - 4);
-      Eigen::RowVectorXd result = Eigen::RowVectorXd::Zero(values.cols());
-      for (Index i = first; i < first + 4; ++i)
-        {
-          double weight = 1.;
-          for (Index j = first; j < first + 4; ++j)
-            if (j != i)
-              weight *= (time - times[j]) / (times[i] - times[j]);
-          result += weight * values.row(i);
-        }
-      return result;
-    }
 
 
     /** At n_grid equal steps from window_start of the time up to `end` on. */
@@ -147,7 +122,7 @@ namespace tanktread
       return result;
     // The earlier estimate looks back furthest.
     const double       T     = times.back() - times.front();
-    const Index        first = std::max<Index>(0, interval(times, times.front() + window_start * earlier * T) - 1), n = values.rows() - first;
+    const Index        first = std::max<Index>(0, last_before(times, times.front() + window_start * earlier * T) - 1), n = values.rows() - first;
     std::vector<Index> columns;
     Index              n_finite_leading = 0;
     for (Index c = 0; c < values.cols(); ++c)
@@ -156,7 +131,7 @@ namespace tanktread
           columns.push_back(c);
           n_finite_leading += c < n_leading ? 1 : 0;
         }
-    const Index n_in_window = values.rows() - interval(times, times.front() + window_start * T);
+    const Index n_in_window = values.rows() - last_before(times, times.front() + window_start * T);
     if (n_in_window < least_samples || n_finite_leading == 0)
       return result;
     MatrixXd finite(values.rows(), columns.size());

@@ -111,7 +111,12 @@ namespace tanktread
                     {"D_last", s.D_last},
                     {"theta_minimum", s.theta_minimum},
                     {"theta_maximum", s.theta_maximum},
-                    {"theta_last", s.theta_last}};
+                    {"theta_last", s.theta_last},
+                    {"D_mean", s.means.D},
+                    {"theta_mean", s.means.theta},
+                    {"intrinsic_viscosity_mean", s.means.intrinsic_viscosity},
+                    {"N1_mean", s.means.N1},
+                    {"N2_mean", s.means.N2}};
       for (const auto &[quantity, limit] : s.limits.named())
         {
           result.emplace_back(quantity + "_limit", limit.value);

@@ -54,6 +54,20 @@ namespace tanktread
       const std::string &folder = parameters.output.directory;
       return finished_summary(folder) && without_study(content(folder + "/used_parameters.prm")) == without_study(parameters.used);
     }
+
+
+    /** Of each series, its first two runs compared. */
+    std::vector<CurveDifferences>
+    curves_of_series(const StudyPlan &plan, const std::vector<Parameters> &parameters, const Summaries &summaries)
+    {
+      std::vector<CurveDifferences> result;
+      for (const StudySeries &series : plan.series)
+        if (series.runs.size() > 1 && summaries[series.runs[0]] && summaries[series.runs[1]])
+          result.push_back(curve_differences_of(parameters[series.runs[0]].output.directory, parameters[series.runs[1]].output.directory));
+        else
+          result.emplace_back();
+      return result;
+    }
   } // namespace
 
 
@@ -162,10 +176,10 @@ namespace tanktread
         end_companions_with_the_run();
     StudyTable table;
     on_first_rank(communicator_, [&] {
-      std::vector<std::optional<std::map<std::string, double>>> summaries;
+      Summaries summaries;
       for (const Parameters &parameters : parameters_)
         summaries.push_back(finished_summary(parameters.output.directory));
-      table = study_table(plan_, summaries, parameters_[0]);
+      table = study_table(plan_, summaries, parameters_[0], curves_of_series(plan_, parameters_, summaries));
     });
     write_table(table);
     if (!failures.empty())

@@ -54,6 +54,12 @@ namespace tanktread
       return result;
     }
 
+    bool
+    is_of_control_mesh(const Choice &choice)
+    {
+      return choice.section == "Shell mesh" && choice.name == "Level";
+    }
+
     std::string
     box_sides(const std::vector<double> &sides, const double divisor)
     {
@@ -178,7 +184,12 @@ namespace tanktread
         if (cause == Cause::tolerances)
           result.push_back("Solver/Newton tolerance=" + number(parameters.solver.newton_tolerance * power(tolerance_ratio, n)));
         if (cause == Cause::target)
-          result.push_back("Accuracy/Target error=" + number(parameters.accuracy.target_error * power(target_ratio, n)));
+          {
+            result.push_back("Accuracy/Target error=" + number(parameters.accuracy.target_error * power(target_ratio, n)));
+            // A level of the control mesh changes its error twentyfold, which would hide, or cancel, what all else changes fourfold.
+            if (std::any_of(parameters.choices.begin(), parameters.choices.end(), is_of_control_mesh))
+              result.push_back("Shell mesh/Level=" + std::to_string(parameters.shell_mesh.level));
+          }
       }
     return result;
   }

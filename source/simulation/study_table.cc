@@ -58,25 +58,72 @@ namespace tanktread
       return ErrorEstimate{std::nan(""), false, *limit, std::abs(summary.at(quantity) - *limit) + *error};
     }
 
-    std::optional<ErrorEstimate>
-    estimate(const StudySeries                                               &series,
-             const std::string                                               &quantity,
-             const std::vector<std::optional<std::map<std::string, double>>> &summaries,
-             const double                                                     order)
+    /** Of the finer (false: coarser) of two values that are `difference` apart. */
+    ErrorEstimate
+    estimate_of_difference(const StudySeries &series, const double value, const double difference, const double order)
     {
-      if (series.causes[0] == Cause::stop)
-        return estimate_of_the_stop(quantity, *summaries[0]);
+      return series.is_finer ? error_of_the_coarsest({value - difference, value}, series.ratio(), order)
+                             : error_estimate({value, value - difference}, series.ratio(), order);
+    }
+
+    /** From the numbers of the summaries alone; for a limit that companions lack from the last values. */
+    std::optional<ErrorEstimate>
+    estimate_of_numbers(const StudySeries &series, const std::string &quantity, const Summaries &summaries, const CurveDifferences &curves, const double order)
+    {
       std::vector<double> values;
       for (const std::size_t run : series.runs)
         {
-          if (!summaries[run] || summaries[run]->count(quantity) == 0)
+          if (!summaries[run])
             return std::nullopt;
-          values.push_back(summaries[run]->at(quantity));
+          if (const std::optional<double> value = number(*summaries[run], quantity))
+            values.push_back(*value);
+        }
+      if (values.size() < series.runs.size())
+        {
+          const std::optional<double> difference = difference_of_limit(quantity, curves);
+          return difference ? std::optional<ErrorEstimate>(estimate_of_difference(series, summaries[0]->at(quantity), *difference, order)) : std::nullopt;
         }
       if (!series.is_finer)
         return error_estimate(values, series.ratio(), order);
       std::reverse(values.begin(), values.end());
       return error_of_the_coarsest(values, series.ratio(), order);
+    }
+
+    std::optional<ErrorEstimate>
+    estimate(const StudySeries &series, const std::string &quantity, const Summaries &summaries, const CurveDifferences &curves, const double order)
+    {
+      if (series.causes[0] == Cause::stop)
+        return estimate_of_the_stop(quantity, *summaries[0]);
+      std::optional<ErrorEstimate> result = estimate_of_numbers(series, quantity, summaries, curves, order);
+      if (result && !result->is_observed)
+        if (const std::optional<double> least = least_difference(quantity, *summaries[0], curves))
+          result->error = std::max(result->error, estimate_of_difference(series, 0., *least, order).error);
+      return result;
+    }
+
+    /** Bars of whole curves, "D_curve" and so on: what any value of it at a given time may be wrong by. The stop has no part in them. */
+    std::vector<StudyRow>
+    rows_of_curves(const StudyPlan &plan, const std::vector<CurveDifferences> &curves, const Parameters &parameters)
+    {
+      std::map<std::string, StudyRow> rows;
+      for (std::size_t s = 0; s < curves.size(); ++s)
+        for (const auto &[name, curve] : curves[s])
+          {
+            const std::string quantity = quantity_of_curve(name);
+            StudyRow         &row =
+              rows.try_emplace(quantity, StudyRow{quantity, curve.size, std::vector<std::optional<ErrorEstimate>>(plan.series.size())}).first->second;
+            row.estimates[s]               = estimate_of_difference(plan.series[s], 0., difference_of_curve(curve), plan.series[s].expected_order(parameters));
+            row.estimates[s]->extrapolated = std::nan("");
+          }
+      std::vector<StudyRow> result;
+      for (auto &[quantity, row] : rows)
+        {
+          for (std::size_t s = 0; s < plan.series.size(); ++s)
+            if (plan.series[s].causes[0] == Cause::stop)
+              row.estimates[s] = ErrorEstimate{std::nan(""), false, std::nan(""), 0.};
+          result.push_back(std::move(row));
+        }
+      return result;
     }
   } // namespace
 
@@ -188,7 +235,7 @@ namespace tanktread
 
 
   StudyTable
-  study_table(const StudyPlan &plan, const std::vector<std::optional<std::map<std::string, double>>> &summaries, const Parameters &parameters)
+  study_table(const StudyPlan &plan, const Summaries &summaries, const Parameters &parameters, const std::vector<CurveDifferences> &curves)
   {
     StudyTable table;
     for (const StudySeries &series : plan.series)
@@ -198,10 +245,14 @@ namespace tanktread
         if (contains(quantity, "_limit_error"))
           continue;
         StudyRow row{quantity, value, {}};
-        for (const StudySeries &series : plan.series)
-          row.estimates.push_back(estimate(series, quantity, summaries, series.expected_order(parameters)));
+        for (std::size_t s = 0; s < plan.series.size(); ++s)
+          row.estimates.push_back(
+            estimate(plan.series[s], quantity, summaries, s < curves.size() ? curves[s] : CurveDifferences(), plan.series[s].expected_order(parameters)));
         table.rows.push_back(std::move(row));
       }
+    for (StudyRow &row : rows_of_curves(plan, curves, parameters))
+      table.rows.push_back(std::move(row));
+    std::sort(table.rows.begin(), table.rows.end(), [](const StudyRow &a, const StudyRow &b) { return a.quantity < b.quantity; });
     return table;
   }
 } // namespace tanktread

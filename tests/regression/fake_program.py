@@ -74,11 +74,13 @@ def circles(rows):
 
 
 def study(folder, target):
-    """The companion of a simple capsule, and what it says of the least value of D, which it has no error in."""
+    """The companion of a simple capsule, and what it says of the curves, and of the least value of D, which it has no error in."""
     companion = folder / "study/target-1"
     companion.mkdir(parents=True, exist_ok=True)
     write(companion / "history.csv", COLUMNS, list(simple(4 * target)))
-    (folder / "study.csv").write_text("quantity,cause,value,error,order,order is observed,extrapolated\nD_minimum,target,0.2,0,1,0,0.2\n")
+    rows = {"D_curve": (0.3, 0.3 * target), "D_minimum": (0.2, 0), "theta_curve": (0.25, 0.03 * target)}
+    (folder / "study.csv").write_text("quantity,cause,value,error,order,order is observed,extrapolated\n" +
+                                      "".join(f"{name},target,{value:g},{error:g},1,0,nan\n" for name, (value, error) in rows.items()))
 
 
 def main():

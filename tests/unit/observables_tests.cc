@@ -161,6 +161,9 @@ TEST(Motion, Swinging)
   EXPECT_NEAR(s.D_maximum, 0.25, 1e-5);
   EXPECT_NEAR(s.theta_minimum, 0.05, 1e-4);
   EXPECT_NEAR(s.theta_maximum, 0.25, 1e-4);
+  EXPECT_NEAR(s.means.D, 0.2, 1e-5); // over four whole periods
+  EXPECT_NEAR(s.means.theta, 0.15, 1e-5);
+  EXPECT_TRUE(std::isnan(s.means.N1));
 }
 
 

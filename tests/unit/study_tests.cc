@@ -9,6 +9,8 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <iomanip>
 #include <stdexcept>
 
 using namespace tanktread;
@@ -204,4 +206,132 @@ TEST(StudyTable, ReadsOnlySummariesOfRunsThatEndedWell)
   const auto summary = finished_summary(folder);
   ASSERT_TRUE(summary);
   EXPECT_EQ(*summary, (std::map<std::string, double>{{"D_last", 0.3}}));
+}
+
+namespace
+{
+  /** n equal steps over ten units of time. */
+  Eigen::VectorXd
+  grid(const int n)
+  {
+    return Eigen::VectorXd::LinSpaced(n + 1, 0., 10.);
+  }
+
+  constexpr double pi = 3.14159265358979323846;
+
+  /** A history.csv over ten units of time; semi-axes and [eta] go with D, and there are no normal stress differences. */
+  void
+  write_history(const std::string &file, const std::function<double(double)> &D)
+  {
+    std::ofstream stream(file);
+    stream << std::setprecision(15) << "time,D_xz,theta,L,B,W,intrinsic_viscosity,N1,N2\n";
+    for (int n = 0; n <= 400; ++n)
+      {
+        const double t = 10. * n / 400;
+        stream << t << ',' << D(t) << ",0.2," << 1. + D(t) << ',' << 1. - D(t) << ",1," << 2.5 + D(t) << ",nan,nan\n";
+      }
+  }
+} // namespace
+
+TEST(CurveDifference, OfAClockThatGoesWrongLeavesNoRest)
+{
+  const Eigen::VectorXd t = grid(200), x = (2. * t.array()).sin(), slope = 2. * (2. * t.array()).cos();
+  const Eigen::VectorXd delay = (1e-3 - 2e-4 * t.array()).matrix();
+  const CurveDifference found = curve_difference(t, x, slope, slope.cwiseProduct(delay));
+  EXPECT_NEAR(found.largest, 2e-3, 1e-5);
+  EXPECT_NEAR(found.at_end, 2. * std::abs(std::cos(20.)) * 1e-3, 1e-15); // a delay of -1e-3 there
+  EXPECT_LT(found.rest, 1e-15);
+  EXPECT_LT(found.time, 1e-15);
+}
+
+TEST(CurveDifference, KeepsWhatIsNoDelay)
+{
+  const Eigen::VectorXd t = grid(2000), x = (2. * pi * t.array()).sin(), slope = 2. * pi * (2. * pi * t.array()).cos();
+  const Eigen::VectorXd other = 0.01 * (6. * pi * t.array()).sin();
+  const CurveDifference found = curve_difference(t, x, slope, other + 0.02 * slope);
+  EXPECT_NEAR(found.rest, 0.01 / std::sqrt(2.), 1e-5);
+  EXPECT_NEAR(found.time, 0.01 / (2. * pi), 1e-5);
+  EXPECT_NEAR(found.size, 1., 1e-6);
+}
+
+TEST(StudyTable, IsNotDeceivedByExtremesThatAgreeByChance)
+{
+  const std::string folder = testing::TempDir() + "/curves";
+  std::filesystem::create_directories(folder + "/companion");
+  const double mean = 0.2, amplitude = 0.05, error = 0.003;
+  const auto   run = [&](const double t) { return mean + amplitude * std::sin(2. * pi * t / 2.5); };
+  write_history(folder + "/history.csv", run);
+  write_history(folder + "/companion/history.csv",
+                [&](const double t) { return run(t) + 0.5 * error * (1. + std::cos(4. * pi * t / 2.5)); }); // vanishes at the extremes, and is no delay
+  const CurveDifferences curves = curve_differences_of(folder, folder + "/companion");
+  EXPECT_NEAR(curves.at("D").largest, error, 1e-6);
+  EXPECT_NEAR(curves.at("D").rest, error * std::sqrt(0.375), 1e-5);
+  EXPECT_NEAR(curves.at("intrinsic_viscosity").largest, error, 1e-6);
+  EXPECT_EQ(curves.count("N1"), 0u); // not finite
+  EXPECT_NEAR(curves.at("theta").largest, 0., 1e-12);
+
+  Parameters                          parameters;
+  const StudyPlan                     plan = study_plan(study_of({"target"}), false);
+  const std::map<std::string, double> summary =
+    {{"D_minimum", 0.15}, {"D_maximum", 0.25}, {"D_period", 2.5}, {"D_frequency", 0.4}, {"D_last", 0.2}, {"intrinsic_viscosity_mean", 2.7}};
+  for (const StudyRow &row : study_table(plan, {summary, summary}, parameters).rows)
+    EXPECT_EQ(row.error(), 0.) << row.quantity;
+  std::map<std::string, double> bars;
+  for (const StudyRow &row : study_table(plan, {summary, summary}, parameters, {curves}).rows)
+    bars[row.quantity] = row.error();
+  const double rest = error * std::sqrt(0.375), delay = rest / (amplitude * 2. * pi / 2.5 / std::sqrt(2.));
+  EXPECT_NEAR(bars.at("D_minimum"), 2. * rest, 1e-5);
+  EXPECT_NEAR(bars.at("D_maximum"), 2. * rest, 1e-5);
+  EXPECT_NEAR(bars.at("D_period"), 2. * delay, 1e-3 * delay);
+  EXPECT_NEAR(bars.at("D_frequency") / 0.4, bars.at("D_period") / 2.5, 1e-12);
+  EXPECT_NEAR(bars.at("D_last"), 1.5 * error, 1e-5);
+  EXPECT_NEAR(bars.at("intrinsic_viscosity_mean"), rest, 1e-5);
+  EXPECT_NEAR(bars.at("D_curve"), 1.5 * error, 1e-5);
+}
+
+TEST(StudyTable, LeavesDifferencesThatAreLargerThanTheCurvesSayAsTheyAre)
+{
+  const CurveDifferences curves = {{"D", {0.3, 1e-4, 1e-4, 1e-5, 1e-4}}};
+  const StudyTable table = study_table(study_plan(study_of({"target"}), false), {{{{"D_maximum", 0.3}}}, {{{"D_maximum", 0.31}}}}, Parameters(), {curves});
+  EXPECT_EQ(table.rows[0].quantity, "D_curve");
+  EXPECT_NEAR(table.rows[1].error(), 0.01, 1e-14);
+}
+
+TEST(StudyTable, BelievesObservedOrdersWithoutTheCurves)
+{
+  const CurveDifferences curves = {{"D", {0.3, 0.1, 0.1, 0.1, 0.1}}};
+  const StudyTable       table =
+    study_table(study_plan(study_of({"cells"}, 3), false), {{{{"D_maximum", 0.3}}}, {{{"D_maximum", 0.31}}}, {{{"D_maximum", 0.35}}}}, Parameters(), {curves});
+  EXPECT_TRUE(table.rows[1].estimates[0]->is_observed);
+  EXPECT_NEAR(table.rows[1].error(), 1.25 * 0.01 / 3., 1e-14);
+}
+
+TEST(StudyTable, TakesLastValuesWhereTheCompanionHasNoLimit)
+{
+  const CurveDifferences curves = {{"D_2", {0.3, 0.02, 0.007, 0.001, 0.1}}};
+  const StudyPlan        plan   = study_plan(study_of({"target", "stop"}), false); // the stop is its first series
+  const StudyTable       table  = study_table(plan, {{{{"D_limit_2", 0.3}, {"D_limit_error_2", 1e-3}}}, {{{"D_last_2", 0.31}}}}, Parameters(), {{}, curves});
+  ASSERT_EQ(table.rows.size(), 2u);
+  EXPECT_EQ(table.rows[0].quantity, "D_curve_2");
+  EXPECT_NEAR(table.rows[0].error(), 0.03, 1e-14);
+  EXPECT_TRUE(table.rows[0].is_complete()); // the stop is no error of a curve
+  EXPECT_EQ(table.rows[1].quantity, "D_limit_2");
+  EXPECT_NEAR(table.rows[1].error(), 0.007 + 1e-3, 1e-14);
+  EXPECT_TRUE(table.rows[1].is_complete());
+}
+
+TEST(StudyPlan, KeepsTheControlMeshThatTheTargetHasChosen)
+{
+  Parameters parameters;
+  parameters.accuracy.target_error = 0.01;
+  parameters.shell_mesh.level      = 2;
+  const StudyRun companion{{{Cause::target, 1}}};
+  const auto     sets = [&](const std::string &text) {
+    const std::vector<std::string> all = changes(parameters, companion);
+    return std::count(all.begin(), all.end(), text);
+  };
+  EXPECT_EQ(sets("Accuracy/Target error=0.04"), 1);
+  EXPECT_EQ(sets("Shell mesh/Level=2"), 0); // set in the file, or of a shape that has its own
+  parameters.choices = {{"Shell mesh", "Level", "2"}};
+  EXPECT_EQ(sets("Shell mesh/Level=2"), 1);
 }

@@ -39,6 +39,13 @@ namespace tanktread
     undetermined // the run is too short to say
   };
 
+  /** Over as many whole periods of D as there are since the motion can be judged, without a period until the end. */
+  struct MotionMeans
+  {
+    double D = MotionSample::unknown, theta = MotionSample::unknown, intrinsic_viscosity = MotionSample::unknown, N1 = MotionSample::unknown,
+           N2 = MotionSample::unknown;
+  };
+
   /**
    * Result of motion_summary(). Times in the scene's unit, frequencies in turns per unit of time: a period of the material or of the shape is the inverse. The
    * shape comes back to
@@ -53,6 +60,7 @@ namespace tanktread
     double       D_period                = MotionSample::unknown;                      // mean time between the maxima of D
     double       D_minimum = MotionSample::unknown, D_maximum = MotionSample::unknown; // of its last oscillation; of the last fifth of the run when it has none
     double       theta_minimum = MotionSample::unknown, theta_maximum = MotionSample::unknown; // between `from` and `end`
+    MotionMeans  means;
     double       D_last = MotionSample::unknown, theta_last = MotionSample::unknown;
     MotionLimits limits;
     double       energy_defect = MotionSample::unknown; // what the steps have left over, relative to the shell's work

@@ -4,6 +4,7 @@
 #ifndef tanktread_simulation_study_table_h
 #define tanktread_simulation_study_table_h
 
+#include <tanktread/simulation/curve_bars.h>
 #include <tanktread/simulation/error_estimate.h>
 #include <tanktread/simulation/study_plan.h>
 
@@ -49,12 +50,16 @@ namespace tanktread
     as_text() const;
   };
 
+  /** Of each run of a plan; nothing where it has failed. */
+  using Summaries = std::vector<std::optional<std::map<std::string, double>>>;
+
   /**
-   * Rows for all numbers of the run's summary; where it relaxes, the limits (D_limit, ...) are what a stop moves least. @param summaries of each run of the plan, nothing where it has failed; the first one is there.
-   * @param parameters of the run itself.
+   * Rows for all numbers of the run's summary; where it relaxes, the limits (D_limit, ...) are what a stop moves least. Then for whole curves, D_curve and so on, the value being the largest magnitude.
+   * @param summaries the first one is there. @param parameters of the run itself.
+   * @param curves for each series how its first two runs differ, empty where one has failed, or none at all: the least that bars can be where no order was observed, theory.md, (52c').
    */
   StudyTable
-  study_table(const StudyPlan &plan, const std::vector<std::optional<std::map<std::string, double>>> &summaries, const Parameters &parameters);
+  study_table(const StudyPlan &plan, const Summaries &summaries, const Parameters &parameters, const std::vector<CurveDifferences> &curves = {});
 } // namespace tanktread
 
 #endif
