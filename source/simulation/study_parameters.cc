@@ -35,7 +35,7 @@ namespace tanktread
       vary,
       "Causes of errors to be told apart by coarser companions of the run: mesh (cells and control mesh, spacings doubled), cells, control mesh, "
       "step (Time/Step doubled, or Time/Tolerance as much larger as doubles the steps), box (half the side, in unbounded liquid twice), stop (no companion: from the limit "
-      "that the run's history is extrapolated to), tolerances (Newton tolerance tenfold), target (Accuracy/Target error fourfold: one companion for all that it chooses). "
+      "that the run's history is extrapolated to), tolerances (Newton tolerance tenfold), target (Accuracy/Target error fourfold: one companion for all that it chooses but the control mesh). "
       "Companions end when the run does. Empty: the run alone.",
       dealii::Patterns::List(dealii::Patterns::Selection(selection)));
     prm.add_parameter("Levels",
