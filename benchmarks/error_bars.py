@@ -74,16 +74,27 @@ def pairs(folder, table):
     return [pair for pair in found if math.isfinite(pair[1] + pair[2])]
 
 
+def certain_references(parameters):
+    """Files for this scene if it is one in shear."""
+    in_shear = parameters.get("Scene/Flow", "shear") == "shear"
+    return [file for file in run_files.find_references(parameters) if in_shear and file.stem not in UNCERTAIN]
+
+
+def chosen_on():
+    """The references of every other scene, whether or not it has been computed."""
+    return set(sorted({file.stem for run in runs.find([]) for file in certain_references(run.parameters())})[::2])
+
+
 def collect(results):
     """[(resolution, reference, viscosity ratio, pairs)]"""
     found = []
     for resolution in runs.RESOLUTIONS:
         for folder in sorted((results / resolution).glob("fig*/*")):
-            if not (folder / "study.csv").is_file() or not (folder / "study/target-1/summary.csv").is_file():
+            if not (folder / "study.csv").is_file():
                 continue
             parameters = run_files.read_parameters(folder / "used_parameters.prm")
-            files = [file for file in run_files.find_references(parameters) if file.stem not in UNCERTAIN]
-            if files and parameters.get("Scene/Flow", "shear") == "shear" and ("D_curve", "target") in runs.read_bars(folder / "study.csv"):
+            files = certain_references(parameters)
+            if files and ("D_curve", "target") in runs.read_bars(folder / "study.csv"):
                 found.append((resolution, files[0].stem, float(parameters.get("Scene/Viscosity ratio", 1)), pairs(folder, run_files.read_table(files[0])[0])))
     return found
 
@@ -104,15 +115,14 @@ def main():
     results = collect(args.results)
     if not results:
         parser.error(f"{args.results} holds no study with curves and a reference solution: run benchmarks/le_2010/run.py, or name its folder with --results")
-    scenes = sorted({reference for _, reference, _, _ in results})
-    chosen_on = set(scenes[::2])
+    scenes, half = {reference for _, reference, _, _ in results}, chosen_on()
     groups = sorted({(resolution, viscosity) for resolution, _, viscosity, _ in results})
     rows = []
     for resolution, viscosity in groups:
         of_group = [pair for r, _, v, found in results if (r, v) == (resolution, viscosity) for pair in found]
         for kind, ends in KINDS.items():
             rows.append([f"{runs.RESOLUTIONS[resolution]}, λ = {viscosity:g}: {kind}", *cells([pair for pair in of_group if pair[0].endswith(ends)])])
-    for name, wanted in (("all", scenes), ("half of the scenes on which the factors were chosen", chosen_on), ("the other half", set(scenes) - chosen_on)):
+    for name, wanted in (("all", scenes), ("half of the scenes on which the factors were chosen", half), ("the other half", scenes - half)):
         rows.append([name, *cells([pair for _, reference, _, found in results if reference in wanted for pair in found])])
     print(report_parts.table(["pairs", "hold", "bar over error, median", "below ten"], [row for row in rows if row[1] != "–"]))
     if args.missed:

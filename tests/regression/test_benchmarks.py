@@ -103,6 +103,9 @@ class Le2010(Repository):
         self.assertIn(f"| G0.05_k0, fair | steady, last values at 10 | {value:.5f} ± {bar:.5f} ({100 * (value / wanted - 1):+.2f} %) |", report)
         self.assertIn("| G0.05_k0.025, fair | steady, last values at 10 | 0.30029 ± 0.00090 | ", report)  # without a reference
         self.assertIn("\n0 of the 4 differences in brackets that stand beside an error bar are within it.\n", report)
+        said = self.passes("error_bars.py", "--missed")  # the curves of two scenes have a reference
+        self.assertIn("| 3e-3, λ = 5: curves | 0 of 4 | ", said)
+        self.assertIn("\n3e-3 sphere_G0.05_k0_lambda5 D_curve: bar 0.0009, error 0.1", said)
         settings = json.loads((self.root / "output/le_2010/fair/fig04/G0.05_k0/run.json").read_text())["settings"]
         self.assertEqual(settings, {"Accuracy/Target error": "3e-3", "Study/Vary": "target, stop"})
 
