@@ -7,6 +7,7 @@ import concurrent.futures
 import json
 import os
 import pathlib
+import platform
 import re
 import shutil
 import subprocess
@@ -73,6 +74,12 @@ def division_of_cores(n_runs, n_cores, jobs=None, ranks=None):
     return jobs or max(1, n_cores // ranks), ranks
 
 
+def processor():
+    file = pathlib.Path("/proc/cpuinfo")
+    names = [line.split(":", 1)[1].strip() for line in file.read_text().splitlines() if line.startswith("model name")] if file.is_file() else []
+    return f"{os.cpu_count()} cores, {names[0] if names else platform.processor() or 'processor unknown'}, {platform.machine()}"
+
+
 class Progress:
     """The state of the runs: one line that changes on a terminal, a line for each run that has ended in a file."""
 
@@ -99,12 +106,13 @@ class Progress:
 class Computation:
     """Runs of the program on a pool of threads."""
 
-    def __init__(self, program, jobs, ranks, resume):
-        self.program, self.jobs, self.ranks, self.resume = str(program.resolve()), jobs, ranks, resume
+    def __init__(self, program, jobs, ranks, resume, cpu_limit=None):
+        """cpu_limit: CPU seconds after which a run is ended, with exit code -SIGXCPU; None: as long as it takes."""
+        self.program, self.jobs, self.ranks, self.resume, self.cpu_limit = str(program.resolve()), jobs, ranks, resume, cpu_limit
         self.progress, self.processes, self.stopped = Progress(), [], False
 
     def command(self, run, settings, folder):
-        words = [self.program, str(run.prm)]
+        words = ([] if self.cpu_limit is None else ["prlimit", f"--cpu={self.cpu_limit}"]) + [self.program, str(run.prm)]
         for name, value in {**settings, "Output/Directory": str(folder)}.items():
             words += ["--set", f"{name}={value}"]
         if self.ranks == 1:
@@ -154,7 +162,7 @@ def compute(args, wanted):
     if len(left) < len(wanted):
         print(f"finished before: {len(wanted) - len(left)} of {len(wanted)} runs")
     jobs, ranks = division_of_cores(len(left), len(os.sched_getaffinity(0)), args.jobs, args.ranks)
-    computation = Computation(args.program, jobs, ranks, args.resume)
+    computation = Computation(args.program, jobs, ranks, args.resume, getattr(args, "cpu_limit", None))
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
         futures = [pool.submit(computation.compute, f"[{i + 1}/{len(left)}] {item[1]} {item[0].name}", *item) for i, item in enumerate(left)]
         try:

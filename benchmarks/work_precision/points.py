@@ -8,9 +8,7 @@ with second order, doubted by all of what that is away from the finest of them.
 
 import csv
 import datetime
-import os
 import pathlib
-import platform
 import sys
 
 import numpy as np
@@ -124,12 +122,6 @@ def rows_of(scene, points):
     return rows, truth
 
 
-def processor():
-    file = pathlib.Path("/proc/cpuinfo")
-    names = [line.split(":", 1)[1].strip() for line in file.read_text().splitlines() if line.startswith("model name")] if file.is_file() else []
-    return f"{os.cpu_count()} cores, {names[0] if names else platform.processor() or 'processor unknown'}, {platform.machine()}"
-
-
 def programs(of):
     """First lines of the logs of all runs: version and revision, each once."""
     logs = [run_of(scene).folder(sweeps.name(point.choice)) / "log.txt" for scene in sweeps.SCENES for point in of[scene.name]]
@@ -138,7 +130,7 @@ def programs(of):
 
 def collect(of, mode, jobs):
     """(notes, rows): the table of all points. of: {scene name: points}."""
-    notes, rows = {"machine": processor(), "date": f"{datetime.date.today()}", "program": programs(of), "mode": mode, "runs at a time": f"{jobs}, one rank each"}, []
+    notes, rows = {"machine": run_scenes.processor(), "date": f"{datetime.date.today()}", "program": programs(of), "mode": mode, "runs at a time": f"{jobs}, one rank each"}, []
     for scene in sweeps.SCENES:
         found, truth = rows_of(scene, of[scene.name])
         rows += found

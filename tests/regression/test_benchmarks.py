@@ -31,7 +31,7 @@ import run_scenes  # noqa: E402
 sys.path.insert(0, str(ROOT / "benchmarks/le_2010"))
 import snapshots  # noqa: E402
 
-SCRIPTS = ["plot_run.py", "plot_study.py", "interface_study.py", "box_study.py", "economy.py", "le_2010/run.py", "flows/run.py", "work_precision/run.py"]
+SCRIPTS = ["plot_run.py", "plot_study.py", "interface_study.py", "box_study.py", "economy.py", "le_2010/run.py", "flows/run.py", "work_precision/run.py", "stability/run.py"]
 
 
 class Repository(unittest.TestCase):
