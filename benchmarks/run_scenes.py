@@ -112,7 +112,7 @@ class Computation:
         self.progress, self.processes, self.stopped = Progress(), [], False
 
     def command(self, run, settings, folder):
-        words = ([] if self.cpu_limit is None else ["prlimit", f"--cpu={self.cpu_limit}"]) + [self.program, str(run.prm)]
+        words = ([] if self.cpu_limit is None else ["prlimit", f"--cpu={self.cpu_limit}:{self.cpu_limit + 10}"]) + [self.program, str(run.prm)]
         for name, value in {**settings, "Output/Directory": str(folder)}.items():
             words += ["--set", f"{name}={value}"]
         if self.ranks == 1:

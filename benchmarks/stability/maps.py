@@ -38,7 +38,6 @@ KHAT = [0.001, 0.04, 1]
 SCHEME_ROWS = [Row(f"{scheme}, κ̂ {khat:g}", {"Time/Scheme": scheme, "Scene/Reduced bending modulus": f"{khat:g}"}, f"{khat:g}") for khat in KHAT for scheme in SCHEMES]
 EXPLICIT = {**STEPS_ALONE, "Solver/Coupling": "explicit"}
 EXPLICIT_STEPS = steps(0.1, 0.03, 0.01, 0.003, 0.001, full=[0.001])
-GAPS = [1, 0.3, 0.1, 0.05, 0.02]
 
 
 def pair(gap):
@@ -46,12 +45,14 @@ def pair(gap):
 
 
 def image(gap):
-    """A disk of radius R = 3/2 - gap/2 in a box that is 3 wide: its images along x and y are that far away."""
-    return {"Scene/Box side": "3, 3, 6", "Fluid mesh/Coarsest cell": "1.5", "Capsule/Shape": "oblate", "Capsule/Aspect ratio": f"{(1.5 - gap / 2) ** -3:.6g}"}
+    """A sphere in a box of side 2 + gap; below 3, which a box has to have, a disk of radius 3/2 - gap/2 instead: its images along x and y are that far away."""
+    side = max(3, 2 + gap)
+    radius = (side - gap) / 2
+    return {"Scene/Box side": f"{side:g}, {side:g}, 6", "Fluid mesh/Coarsest cell": f"{side / 2:g}", "Capsule/Shape": "oblate", "Capsule/Aspect ratio": f"{radius ** -3:.6g}"}
 
 
-def near(neighbour, settings):
-    return [Row(f"{neighbour} {gap:g}a", settings(gap), f"{neighbour} {gap:g}") for gap in GAPS]
+def near(neighbour, settings, gaps=(1, 0.3, 0.1, 0.05, 0.02)):
+    return [Row(f"{neighbour} {gap:g}a", settings(gap), f"{neighbour} {gap:g}") for gap in gaps]
 
 
 MAPS = [
@@ -87,10 +88,12 @@ MAPS = [
     Map("gaps", "Gaps", "box", {"Scene/End time": "0.5"}, "gap to",
         near("wall", lambda gap: {"Capsule/Centres": f"0, 0, {-2 + gap:g}"}) + near("capsule", pair), "finest cell", cells(0.5, 0.25, 0.125, full=[0.125]),
         "D of the first capsule is compared; the gap itself is in the warnings."),
-    Map("images", "Gaps to the own image", "box", {"Scene/End time": "0.5"}, "gap to", near("image", image), "finest cell", cells(0.5, 0.25, 0.125, full=[0.125]),
-        "A flat disk in a box 3a wide and long; the interface needs four cells between a shell and its image."),
-    Map("dimple", "The dimple of a disk closing", "biconcave", {"Scene/Flow": "planar extension", "Capsule/Inclination": "0", "Capsule/Area dilatation number": "1"}, "G",
-        rows("Scene/Shear number G", [0.02, 0.1, 0.5, 2]), "finest cell", cells(0.6, 0.3, 0.15, full=[0.15]), "Extension along the disk presses its two sheets together."),
+    Map("images", "Gaps to the own image", "box", {"Scene/End time": "0.5"}, "gap to", near("image", image, (2.5, 1.2, 0.7, 0.3, 0.1, 0.02)), "finest cell", cells(0.5, 0.25, 0.125),
+        "A sphere, below a gap of 1a a flat disk in a box 3a wide and long; the interface needs four cells between a shell and its image."),
+    Map("dimple", "The dimple of a disk closing", "biconcave",
+        {"Scene/Flow": "linear", "Scene/Velocity gradient": "1, 0, 0, 0, 1, 0, 0, 0, -2", "Scene/End time": "1.5", "Capsule/Inclination": "0", "Capsule/Area dilatation number": "1"}, "G",
+        rows("Scene/Shear number G", [0.02, 0.1, 0.5, 2]), "finest cell", cells(0.5, 0.25, 0.125, full=[0.125]),
+        "Extension along x and y presses the two sheets of the disk together."),
     Map("inertia", "Reynolds number", "box", {"Scene/End time": "1"}, "Re", rows("Scene/Reynolds number", [0, 1, 10, 30, 100]), "γ̇Δt", steps(0.5, 0.2, 0.05), ""),
     Map("thickness", "Thick and thin shells", "sphere", {"Scene/Reduced bending modulus": "0"}, "thickness/a", rows("Capsule/Thickness", [0.002, 0.02, 0.1, 0.3, 0.6]), "γ̇Δt", steps(1, 0.3, 0.1), ""),
     Map("spheroids", "Spheroids from flat to long", "sphere", {"Capsule/Shape": "ellipsoid", "Capsule/Reference curvature": "initial", "Capsule/Inclination": "0.25"}, "c/a",

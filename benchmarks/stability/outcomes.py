@@ -93,7 +93,8 @@ def counts(log):
 def costs(table, record):
     done = table["time"][-1]
     steps = len(table["time"]) - 1
-    result = {"D": float(table["D_xz"][-1]), "volume_error": float(np.max(np.abs(table["volume_error"]))), "detail_ratio": float(np.nanmax(table["detail_ratio"])), "time": float(done), "steps": steps}
+    result = {"D": float(table["D_xz"][-1]), "volume_error": float(np.max(np.abs(table["volume_error"]))), "detail_ratio": float(np.max(table["detail_ratio"], initial=0.0, where=np.isfinite(table["detail_ratio"]))),
+              "time": float(done), "steps": steps}
     if steps > 0:
         result.update(newton_a_step=float(np.mean(table["newton_iterations"][1:])), linear_a_step=float(np.mean(table["linear_iterations"][1:])), cpu_a_unit=record["cpu_seconds"] / done)
     return result

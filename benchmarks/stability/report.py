@@ -17,7 +17,7 @@ def percent(value):
 def text_of(row):
     """"halves 3, warned: gap, 4.1 %"."""
     words = row["outcome"] + (f" {row['halved']:.0f}" if row["outcome"] == "halves" else "")
-    if row["outcome"] in ("ends", "limit") and row["time"] > 0:
+    if row["outcome"] in ("ends", "limit") and row["time"] >= 0:
         words += f" at {row['time']:.3g}"
     words += f" ({row['warnings'].replace(' ', ', ')})" if row["warnings"] else ""
     return (f"**{words}**" if row["outcome"] in outcomes.BAD else words) + percent(row["error_D"])

@@ -98,7 +98,7 @@ namespace tanktread
         const double scaled = (point[d] / box_.side[d] + 0.5) * n[d];
         if (!(std::abs(scaled) < 1e9) || (!box_.is_periodic(d) && !(scaled >= 0. && scaled < n[d])))
           throw NumericalError("The shell has left the fluid: coordinate " + std::to_string(point[d]) + " along axis " + std::to_string(d) +
-                               ", the faces of the box being at +-" + std::to_string(0.5 * box_.side[d]) + '.');
+                               ", the faces of the box being at +-" + std::to_string(0.5 * box_.side[d]));
         const int i            = static_cast<int>(std::floor(scaled));
         result.key.position[d] = modulo(i, n[d]);
         result.unit[d]         = scaled - i;

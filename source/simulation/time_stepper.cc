@@ -246,7 +246,8 @@ namespace tanktread
           result.length = memory_.next_length;
       }
     std::ostringstream message;
-    message << "No time step between " << shortest << " and " << wanted << " could be solved; the last attempt: " << failure << '.';
+    message << "No time step between " << shortest << " and " << wanted
+            << " could be solved (none is tried below a thousandth of Time/Step); the last attempt: " << failure << '.';
     throw NumericalError(message.str());
   }
 
