@@ -55,8 +55,9 @@ def histories_of(folder):
 
 
 def warnings_in(log):
-    """Names of what the program has warned of, `worst_` left out."""
-    return list(dict.fromkeys(re.findall(r"^WARNED from time \S+ on: (?:worst_)?(\w+)", log, re.MULTILINE)))
+    """Names of what the program has warned of, `worst_` left out; "too_coarse": what is set is so for the target."""
+    at_start = ["too_coarse"] if re.search(r"^WARNING: what the file sets is too coarse", log, re.MULTILINE) else []
+    return at_start + list(dict.fromkeys(re.findall(r"^WARNED from time \S+ on: (?:worst_)?(\w+)", log, re.MULTILINE)))
 
 
 def energy_rise(table):

@@ -24,6 +24,8 @@ namespace tanktread
     // Parts of the target that each cause may have.
     constexpr double of_cells = 0.45, of_steps = 0.3, of_newton = 0.2, of_stop = 0.5, of_control_mesh = 0.55;
 
+    constexpr double far_beyond_target = 10.; // what a file sets is warned of from there on
+
     constexpr double hardly_larger = 1.1; // than wanted: a cell for which there is 60 % of the target
 
     // The model: doc/accuracy.md, "The dial". Errors are relative to the largest D; h in a.
@@ -355,6 +357,22 @@ namespace tanktread
   }
 
 
+  namespace
+  {
+    /** Whether the parameter that decides on a cause of errors has not been chosen for the target. */
+    bool
+    is_set_by_the_file(const std::vector<Choice> &choices, const std::string &cause)
+    {
+      const std::string name = cause == "cells" ? "Finest cell"
+        : cause == "control mesh"               ? "Level"
+        : cause == "steps"                      ? "Tolerance"
+        : cause == "Newton tolerance"           ? cause
+                                                : "";
+      return !name.empty() && std::none_of(choices.begin(), choices.end(), [&](const Choice &choice) { return choice.name == name; });
+    }
+  } // namespace
+
+
   std::string
   accuracy_text(const Parameters &parameters)
   {
@@ -365,13 +383,20 @@ namespace tanktread
     if (parameters.choices.empty())
       text << "  nothing, all is set\n";
     text << "Expected errors of D, relative to its largest value, about " << expected_deformation(parameters) << ":\n";
-    double sum = 0.;
+    double      sum = 0.;
+    std::string warnings;
     for (const ErrorShare &share : expected_errors(parameters))
       {
         sum += share.error;
+        if (share.error > far_beyond_target * parameters.accuracy.target_error && is_set_by_the_file(parameters.choices, share.cause))
+          warnings += "WARNING: what the file sets is too coarse for Accuracy/Target error: " + share.cause + ", expected to add " + number(share.error) +
+            " to the error of D. Leave it to the target.\n";
         text << "  " << std::left << std::setw(32) << share.cause << std::setw(9) << share.error << "half of it: " << share.cost_of_half << " times the time\n";
       }
-    text << "  " << std::setw(32) << "sum, if none cancels another" << sum << '\n';
+    if (parameters.time.tolerance == 0.)
+      text << "  " << std::setw(32) << "steps"
+           << "not known: Time/Tolerance is 0\n";
+    text << "  " << std::setw(32) << "sum, if none cancels another" << sum << '\n' << warnings;
     return text.str();
   }
 } // namespace tanktread

@@ -53,6 +53,7 @@ class Outcomes(unittest.TestCase):
         self.assertEqual(self.outcome(), "holds")
         self.assertEqual(self.outcome(log=WARNED), "warned")
         self.assertEqual(self.outcome(D=(0.0, float("nan"))), "nan")
+        self.assertEqual(self.judge(log="WARNING: what the file sets is too coarse for Accuracy/Target error: cells, ...\n")[1]["warnings"], "too_coarse")
         row = self.judge(log=HALVED + WARNED)[1]
         self.assertEqual((row["outcome"], row["halved"], row["repeated"], row["warnings"]), ("halves", 2, 1, "gap"))
         self.assertEqual((row["newton_a_step"], row["linear_a_step"], row["cpu_a_unit"]), (2, 8, 11))

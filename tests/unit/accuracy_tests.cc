@@ -223,6 +223,17 @@ TEST(Accuracy, TheLogSaysWhatIsChosenAndWhatIsExpected)
   for (const std::string part :
        {"Accuracy/Target error = 0.001", "Fluid mesh/Finest cell = ", "Scene/Boundary = unbounded", "control mesh", "half of it: ", "sum"})
     EXPECT_NE(text.find(part), std::string::npos) << part << '\n' << text;
+  EXPECT_EQ(text.find("WARNING"), std::string::npos) << text;
+  EXPECT_EQ(text.find("not known"), std::string::npos) << text;
+}
+
+
+TEST(Accuracy, WhatIsSetFarTooCoarseForTheTargetIsWarnedOf)
+{
+  const std::string text = accuracy_text(read({target("1e-2"), "Shell mesh/Level=0", "Time/Step=0.1"}));
+  EXPECT_NE(text.find("WARNING: what the file sets is too coarse for Accuracy/Target error: control mesh, expected to add 0.2"), std::string::npos) << text;
+  EXPECT_NE(text.find("not known: Time/Tolerance is 0"), std::string::npos) << text;
+  EXPECT_EQ(accuracy_text(read({target("1e-2"), "Shell mesh/Level=1"})).find("WARNING"), std::string::npos);
 }
 
 
