@@ -9,6 +9,8 @@ import maps
 import outcomes
 from report_parts import show, table
 
+RIGHT = 0.02  # of D: what explicit and implicit steps are compared at
+
 
 def percent(value):
     return "" if math.isnan(value) else f" {100 * value:.2g} %"
@@ -60,6 +62,23 @@ def cheapest(found):
     return "\n".join(lines) + "\n" if lines else "Nothing failed and nothing was warned of.\n"
 
 
+def cheapest_right(rows, map_name, khat):
+    """Of the runs of a map with this kappa hat whose D is right to RIGHT, the one with the fewest CPU seconds a unit of time; None if there is none."""
+    found = [row for row in rows if row["map"] == map_name and row["row"].split("κ̂ ")[-1] == khat and row["outcome"] in outcomes.FINISHED and not row["error_D"] > RIGHT]
+    return min(found, key=lambda row: row["cpu_a_unit"], default=None)
+
+
+def explicit_beside_implicit(rows):
+    """Longest steps are the cheapest: what explicit ones cost at their limit, and what implicit ones do."""
+    body = []
+    for flow, title in (("shear", "shear"), ("relaxation", "relaxation")):
+        for khat in map(str, maps.KHAT):
+            explicit, implicit = cheapest_right(rows, f"explicit_{flow}", khat), cheapest_right(rows, f"schemes_{flow}", khat)
+            texts = [f"{show(row['cpu_a_unit'], 2)} ({row['row'].split(',')[0] + ', ' if kind else ''}{row['column']})" if row else "none" for kind, row in enumerate((explicit, implicit))]
+            body.append([title, khat, *texts, show(explicit["cpu_a_unit"] / implicit["cpu_a_unit"], 2) if explicit and implicit else "–"])
+    return table(["flow", "κ̂", "explicit (step)", "implicit (scheme, step)", "ratio"], body)
+
+
 def forbidden(rows):
     bad = [row for row in rows if row["outcome"] in outcomes.BAD]
     if not bad:
@@ -104,6 +123,8 @@ def page(notes, rows, figure):
                        program=notes.get("program", ""), runs=notes.get("runs", len(rows)), seconds=notes.get("CPU seconds", "?")).replace("FIGURE", figure)
     text += "\n## What must not be\n\n" + forbidden(rows)
     text += "\n## All maps\n\n“Not made”: runs of the full mode that are not in the table.\n\n" + overview(rows)
+    text += ("\n## Explicit beside implicit steps\n\nCPU seconds a unit of time of the cheapest runs whose D is within "
+             f"{100 * RIGHT:g} % of that of the finest steps; explicit runs are shorter, and compared among themselves.\n\n" + explicit_beside_implicit(rows))
     for map_ in maps.MAPS:
         found = [row for row in rows if row["map"] == map_.name]
         if not found:
