@@ -363,11 +363,7 @@ namespace tanktread
     bool
     is_set_by_the_file(const std::vector<Choice> &choices, const std::string &cause)
     {
-      const std::string name = cause == "cells" ? "Finest cell"
-        : cause == "control mesh"               ? "Level"
-        : cause == "steps"                      ? "Tolerance"
-        : cause == "Newton tolerance"           ? cause
-                                                : "";
+      const std::string name = cause == "cells" ? "Finest cell" : cause == "control mesh" ? "Level" : cause == "steps" ? "Tolerance" : "";
       return !name.empty() && std::none_of(choices.begin(), choices.end(), [&](const Choice &choice) { return choice.name == name; });
     }
   } // namespace
