@@ -9,7 +9,7 @@ A run holds, is warned of, halves its steps, ends with a sentence or is refused;
 outcomes.csv (all runs), stability.png, stability.md. A run that is there with the same scene and settings is not made again, however it ended; delete its folder to repeat it. With --doc
 doc/stability.md, doc/figures/stability.png and benchmarks/stability/outcomes.csv are renewed.
 
-Each run has one rank and at most --limit CPU seconds. All runs of --quick take some ten minutes on two idle cores with --jobs 2.
+Each run has one rank and at most --limit CPU seconds.
 """
 
 import argparse
