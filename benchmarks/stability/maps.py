@@ -48,7 +48,7 @@ def image(gap):
     """A sphere in a box of side 2 + gap; below 3, which a box has to have, a disk of radius 3/2 - gap/2 instead: its images along x and y are that far away."""
     side = max(3, 2 + gap)
     radius = (side - gap) / 2
-    return {"Scene/Box side": f"{side:g}, {side:g}, 6", "Fluid mesh/Coarsest cell": f"{side / 2:g}", "Capsule/Shape": "oblate", "Capsule/Aspect ratio": f"{radius ** -3:.6g}"}
+    return {"Scene/Box side": f"{side:g}, {side:g}, {2 * side:g}", "Fluid mesh/Coarsest cell": f"{side / 2:g}", "Capsule/Shape": "oblate", "Capsule/Aspect ratio": f"{radius ** -3:.6g}"}
 
 
 def near(neighbour, settings, gaps=(1, 0.3, 0.1, 0.05, 0.02)):
