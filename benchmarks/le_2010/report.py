@@ -80,9 +80,9 @@ from the results that it finds. The parameter files, in `benchmarks/le_2010`, ho
 relative error of D that is wanted: {resolutions}.
 Each run is shown at the finest of them at which it was done. The paper has walls at z = ±5a and is periodic along x and y; here the liquid is unbounded (`theory.md`, section 3.4).
 
-**Error bars** are those of a study (`theory.md`, section 8.4): the difference from a companion of four times the target, for limits also the bar of the limit. "Whole run" is the same for
-the curve of D, at all times and relative to its largest value, and of θ/π, weighted with D over its largest value. A companion may agree with its run by chance, where errors of several causes
-cancel; below each table stands how many bars hold. A membrane that wrinkles converges to nothing: its bars say little. Runs with fixed steps, in fig. 1, have no bars, since a companion could not tell
+**Error bars** are those of a study (`theory.md`, section 8.4): the difference from a companion of four times the target, for limits also the bar of the limit, and at least what the whole curves of both say, since single numbers may
+agree by chance. "Whole run" is the same for the curve of D, at all times and relative to its largest value, and of θ/π, weighted with D over its largest value. Below each table stands how many bars
+hold. A membrane that wrinkles converges to nothing: its bars say little. Runs with fixed steps, in fig. 1, have no bars, since a companion could not tell
 what the steps do.
 
 In brackets, and as dashed curves, are differences from the boundary-integral solutions of `benchmarks/reference`: of limits from the last row of the solution, of extremes and periods from its own,
