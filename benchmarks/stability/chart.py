@@ -57,7 +57,7 @@ def panel(axes, map_, rows):
     axes.spines[:].set_visible(False)
 
 
-def draw(rows, file):
+def draw(_, rows, file):
     shown = [map_ for map_ in maps.MAPS if any(row["map"] == map_.name for row in rows)]
     heights = [HEAD + ROW * len(map_.rows) for map_ in shown]
     places, tallest = arrange(heights, N_COLUMNS)

@@ -9,9 +9,7 @@
 and those that must not be: `wrong` (no warning, and D at the end differs by more than a tenth of its largest value from the finest run of the group, or energy rises in a liquid at rest), `nan`
 (in a history), `hang` (the limit of CPU time without a step in its last half) and `crash` (a signal, or an exit code without a sentence)."""
 
-import csv
 import datetime
-import math
 import pathlib
 import re
 import signal
@@ -23,6 +21,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 import run_files  # noqa: E402
 import run_scenes  # noqa: E402
+import run_table  # noqa: E402
 
 import maps  # noqa: E402
 
@@ -171,21 +170,4 @@ def collect(quick, jobs):
 
 
 def write(file, notes, rows):
-    file.parent.mkdir(parents=True, exist_ok=True)
-    with open(file, "w", newline="", encoding="utf-8") as stream:
-        for key, value in notes.items():
-            stream.write(f"# {key}: {value}\n")
-        writer = csv.DictWriter(stream, TEXTS[:-1] + NUMBERS + TEXTS[-1:], lineterminator="\n")
-        writer.writeheader()
-        for row in rows:
-            writer.writerow({key: f"{value:.4g}" if isinstance(value, float) else value for key, value in row.items()})
-
-
-def read(file):
-    """(notes, rows) of a table written by write(): NaN where a number is missing."""
-    lines = file.read_text(encoding="utf-8").splitlines()
-    notes = dict(line[2:].split(": ", 1) for line in lines if line.startswith("# "))
-    rows = list(csv.DictReader(line for line in lines if not line.startswith("# ")))
-    for row in rows:
-        row.update({key: run_files.number(row[key]) if row[key] else math.nan for key in NUMBERS})
-    return notes, rows
+    run_table.write(file, TEXTS[:-1] + NUMBERS + TEXTS[-1:], notes, ({key: f"{value:.4g}" if isinstance(value, float) else value for key, value in row.items()} for row in rows))

@@ -23,6 +23,7 @@ import python_packages  # noqa: E402
 python_packages.need("numpy", "matplotlib")
 
 import run_scenes  # noqa: E402
+import run_table  # noqa: E402
 
 import maps  # noqa: E402
 import outcomes  # noqa: E402
@@ -85,22 +86,8 @@ def main():
         return validate(args)
     import chart  # not before: matplotlib takes a second
     import report
-    here, doc, table = pathlib.Path(__file__).resolve().parent, run_scenes.ROOT / "doc", outcomes.OUTPUT / "outcomes.csv"
-    if args.draw:
-        notes, rows = outcomes.read(table if table.is_file() else here / "outcomes.csv")
-    else:
-        outcomes.write(table, *measure(args))
-        notes, rows = outcomes.read(table)
-    targets = [(outcomes.OUTPUT / "stability.md", outcomes.OUTPUT / "stability.png", "stability.png")]
-    if args.doc:
-        targets.append((doc / "stability.md", doc / "figures/stability.png", "figures/stability.png"))
-        if table.is_file():
-            (here / "outcomes.csv").write_bytes(table.read_bytes())
-    for page, figure, link in targets:
-        figure.parent.mkdir(parents=True, exist_ok=True)
-        chart.draw(rows, figure)
-        page.write_text(report.page(notes, rows, link), encoding="utf-8")
-        print(page)
+    file = outcomes.OUTPUT / "outcomes.csv"
+    run_table.renew(args, pathlib.Path(__file__).resolve().parent, file, outcomes.NUMBERS, lambda: outcomes.write(file, *measure(args)), chart.draw, report.page)
     return 0
 
 

@@ -6,7 +6,6 @@ True are the boundary-integral solutions of benchmarks/reference for D and theta
 with second order, doubted by all of what that is away from the finest of them.
 """
 
-import csv
 import datetime
 import pathlib
 import sys
@@ -19,6 +18,7 @@ sys.path.append(str(HERE.parent / "le_2010"))  # at the end: it has a report.py 
 import motion  # noqa: E402
 import run_files  # noqa: E402
 import run_scenes  # noqa: E402
+import run_table  # noqa: E402
 
 import norms  # noqa: E402
 import sweeps  # noqa: E402
@@ -27,6 +27,7 @@ OUTPUT = run_scenes.ROOT / "output/work_precision"
 ERRORS = ([f"error_{quantity}" for quantity in norms.QUANTITIES] + [f"end_error_{quantity}" for quantity in norms.QUANTITIES] + ["period_error"]
           + [f"difference_{quantity}" for quantity in norms.QUANTITIES])
 COSTS = ["cpu_seconds", "wall_seconds", "steps", "cells", "control_points", "newton_iterations", "linear_iterations"]
+NUMBERS = ["value", *ERRORS, *COSTS]
 COLUMNS = ["scene", "cause", "value", "run", "settings", "outcome", *ERRORS, *COSTS]
 
 
@@ -139,27 +140,4 @@ def collect(of, mode, jobs):
 
 
 def write(file, notes, rows):
-    file.parent.mkdir(parents=True, exist_ok=True)
-    with open(file, "w", newline="", encoding="utf-8") as stream:
-        for key, value in notes.items():
-            stream.write(f"# {key}: {value}\n")
-        writer = csv.DictWriter(stream, COLUMNS, lineterminator="\n")
-        writer.writeheader()
-        for row in rows:
-            writer.writerow({key: f"{value:.5g}" if isinstance(value, float) and key in ERRORS else value for key, value in row.items()})
-
-
-def read(file):
-    """(notes, rows) of a table written by write(): numbers where there are numbers, NaN where a number is missing."""
-    notes, lines = {}, []
-    for line in file.read_text(encoding="utf-8").splitlines():
-        if line.startswith("# "):
-            key, _, value = line[2:].partition(": ")
-            notes[key] = value
-        else:
-            lines.append(line)
-    rows = list(csv.DictReader(lines))
-    for row in rows:
-        for key in ["value", *ERRORS, *COSTS]:
-            row[key] = run_files.number(row[key])
-    return notes, rows
+    run_table.write(file, COLUMNS, notes, ({key: f"{value:.5g}" if isinstance(value, float) and key in ERRORS else value for key, value in row.items()} for row in rows))

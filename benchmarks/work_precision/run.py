@@ -23,6 +23,7 @@ import python_packages  # noqa: E402
 python_packages.need("numpy", "matplotlib")
 
 import run_scenes  # noqa: E402
+import run_table  # noqa: E402
 
 import chart  # noqa: E402
 import points  # noqa: E402
@@ -67,23 +68,8 @@ def measure(args):
 
 def main():
     args = arguments()
-    here, doc = pathlib.Path(__file__).resolve().parent, run_scenes.ROOT / "doc"
-    table = points.OUTPUT / "points.csv"
-    if args.draw:
-        notes, rows = points.read(table if table.is_file() else here / "points.csv")
-    else:
-        points.write(table, *measure(args))
-        notes, rows = points.read(table)
-    targets = [(points.OUTPUT / "work_precision.md", points.OUTPUT / "work_precision.png", "work_precision.png")]
-    if args.doc:
-        targets.append((doc / "work_precision.md", doc / "figures/work_precision.png", "figures/work_precision.png"))
-        if table.is_file():
-            (here / "points.csv").write_bytes(table.read_bytes())
-    for page, figure, link in targets:
-        figure.parent.mkdir(parents=True, exist_ok=True)
-        chart.draw(notes, rows, figure)
-        page.write_text(report.page(notes, rows, link), encoding="utf-8")
-        print(page)
+    file = points.OUTPUT / "points.csv"
+    run_table.renew(args, pathlib.Path(__file__).resolve().parent, file, points.NUMBERS, lambda: points.write(file, *measure(args)), chart.draw, report.page)
     return 0
 
 

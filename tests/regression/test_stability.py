@@ -16,6 +16,8 @@ import python_packages  # noqa: E402
 
 python_packages.need("numpy", "matplotlib")
 
+import run_table  # noqa: E402
+
 import maps  # noqa: E402
 import outcomes  # noqa: E402
 
@@ -89,7 +91,7 @@ class Outcomes(unittest.TestCase):
     def test_the_table_is_read_as_it_was_written(self):
         row = self.judge(log=WARNED)[1]
         outcomes.write(self.folder / "table.csv", {"mode": "quick: yes"}, [row])
-        notes, (found,) = outcomes.read(self.folder / "table.csv")
+        notes, (found,) = run_table.read(self.folder / "table.csv", outcomes.NUMBERS)
         self.assertEqual(notes, {"mode": "quick: yes"})
         self.assertEqual([found[key] for key in ("outcome", "warnings", "halved", "D")], ["warned", "gap", 0, 0.3])
         self.assertTrue(found["error_D"] != found["error_D"])
