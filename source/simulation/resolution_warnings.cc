@@ -255,4 +255,15 @@ namespace tanktread
           number(past.worst) + " at time " + number(past.time_of_worst) + " (threshold " + number(warning_threshold(entries[i].concern, context)) + ").";
     return result;
   }
+
+
+  std::string
+  warnings_before_failure(const WarningMemory &memory)
+  {
+    std::string names;
+    for (std::size_t i = 0; i < n_concerns; ++i)
+      if (!std::isnan(memory.concerns[i].since))
+        names += std::string(names.empty() ? "" : ", ") + entries[i].name;
+    return names.empty() ? "" : " A likely cause is what the run had warned of before, " + names + ": the warnings say what to change.";
+  }
 } // namespace tanktread

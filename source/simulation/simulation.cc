@@ -374,11 +374,12 @@ namespace tanktread
       {
         if (!meeting.all_come())
           throw; // the other ranks have not failed, and wait for this one elsewhere: nothing can be written together
-        log_.line("FAILED at time " + std::to_string(memory_.time) + ": " + error.what());
+        const std::string reason = error.what() + warnings_before_failure(memory_.warnings);
+        log_.line("FAILED at time " + std::to_string(memory_.time) + ": " + reason);
         log_.line("Last good state: " + results_->write_failed(scene_, state_) + ".");
         summarise("failed");
         log_.timings(scene_.timings());
-        throw;
+        throw NumericalError(reason);
       }
     log_.timings(scene_.timings());
   }

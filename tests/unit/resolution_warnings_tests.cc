@@ -56,6 +56,7 @@ TEST(ResolutionWarnings, OncePerConcernAndNotBelowTheThreshold)
       WarningMemory memory;
       EXPECT_TRUE(update_warnings(memory, 1., only(concern, times_as_bad(concern, 0.99)), context).empty());
       EXPECT_TRUE(warnings_in_short(memory, context).empty());
+      EXPECT_TRUE(warnings_before_failure(memory).empty());
       const auto said = update_warnings(memory, 2.5, only(concern, times_as_bad(concern, 1.01)), context);
       ASSERT_EQ(said.size(), 1u);
       EXPECT_EQ(said[0], warning_text(concern, times_as_bad(concern, 1.01), 2.5, context));
@@ -101,6 +102,7 @@ TEST(ResolutionWarnings, TheWorstValuesAreKept)
   EXPECT_EQ(worst_figures(memory).front().first, "worst_triangle");
   EXPECT_EQ(worst_figures(memory).front().second, 0.2);
   EXPECT_EQ(warnings_in_short(memory, context), "WARNED from time 2 on: worst_triangle came to 0.2 at time 3 (threshold 0.4).");
+  EXPECT_EQ(warnings_before_failure(memory), " A likely cause is what the run had warned of before, worst_triangle: the warnings say what to change.");
   update_warnings(memory, 6., only(Concern::folds, 0.01), context);
   update_warnings(memory, 7., only(Concern::folds, 0.02), context);
   EXPECT_EQ(memory.concerns[4].worst, 0.02);

@@ -91,6 +91,10 @@ namespace tanktread
   /** One line for each warning that has been given: the worst value and its time; empty without warnings. */
   std::string
   warnings_in_short(const WarningMemory &memory, const ResolutionContext &context);
+
+  /** For the sentence that a failed run ends with: which warnings came before it, as the likely cause; empty without warnings. */
+  std::string
+  warnings_before_failure(const WarningMemory &memory);
 } // namespace tanktread
 
 #endif
