@@ -55,7 +55,7 @@ namespace tanktread
   inline SceneDescription
   pair(SceneDescription scene)
   {
-    scene.centres = {Eigen::RowVector3d(-2.5, 0., 0.), Eigen::RowVector3d(2.5, 0., 0.)};
+    scene.places = {Eigen::RowVector3d(-2.5, 0., 0.), Eigen::RowVector3d(2.5, 0., 0.)};
     return scene;
   }
 

@@ -6,10 +6,12 @@
 #include <tanktread/base/parameter_file.h>
 #include <tanktread/base/parameter_table.h>
 #include <tanktread/simulation/parameters.h>
+#include <tanktread/simulation/random_places.h>
 #include <tanktread/simulation/scene_description.h>
 
 #include <deal.II/base/parameter_handler.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <sstream>
 
@@ -42,6 +44,7 @@ namespace tanktread
           parameters.accuracy.check();
           parameters.scene.check();
           parameters.capsule.check();
+          parameters.placement.check();
           check_mesh_file(parameters.capsule);
           parameters.fluid_mesh.check(parameters.scene.box());
           return true;
@@ -90,8 +93,50 @@ namespace tanktread
       const std::filesystem::path file = std::filesystem::absolute(parameters.file);
       if (!parameters.capsule.file.empty())
         set(prm, "Capsule", "Mesh file", (file.parent_path() / parameters.capsule.file).lexically_normal().string());
+      if (!parameters.placement.file.empty())
+        set(prm, "Capsule", "Places file", (file.parent_path() / parameters.placement.file).lexically_normal().string());
       if (parameters.output.directory.empty())
         set(prm, "Output", "Directory", "output/" + file.stem().string());
+    }
+
+    /** Random places do not depend on the control mesh: the shape's points on a coarse one are enough. */
+    std::vector<Place>
+    random_places(const Parameters &parameters)
+    {
+      const PlacementParameters &placement = parameters.placement;
+      const Box                  box       = parameters.scene.box();
+      const double               face_gap  = parameters.scene.boundary == Boundary::unbounded ? UnboundedLiquid::least_distance : 0.;
+      try
+        {
+          return random_places(
+            {placement.number_in(box.volume()), placement.seed, placement.least_gap, std::max(placement.least_gap, face_gap), placement.turned},
+            make_capsule(parameters.capsule, 2),
+            box);
+        }
+      catch (const InputError &error)
+        {
+          throw InputError(std::string(placement.number > 0 ? "Capsule/Number: " : "Capsule/Volume fraction: ") + error.what());
+        }
+    }
+
+    /** Makes a list of places from a file or at random. */
+    void
+    place_capsules(dealii::ParameterHandler &prm, const Parameters &parameters, const ParameterSource &source)
+    {
+      if (parameters.placement.placement == Placement::list)
+        return;
+      try
+        {
+          const auto [centres, rotations] =
+            as_lists(parameters.placement.placement == Placement::file ? read_places(parameters.placement.file) : random_places(parameters));
+          set(prm, "Capsule", "Placement", "list");
+          set(prm, "Capsule", "Centres", centres);
+          set(prm, "Capsule", "Rotations", rotations);
+        }
+      catch (const InputError &error)
+        {
+          throw InputError(source.locate(error.what()));
+        }
     }
   } // namespace
 
@@ -140,6 +185,7 @@ namespace tanktread
     collect([&] { accuracy.check(); });
     collect([&] { scene.check(); });
     collect([&] { capsule.check(); });
+    collect([&] { placement.check(); });
     collect([&] { check_mesh_file(capsule); });
     collect([&] { shell.check(); });
     collect([&] { check_solver(scene, solver); });
@@ -172,6 +218,8 @@ namespace tanktread
       parameters.choices = accuracy_choices(parameters, source);
     for (const Choice &choice : parameters.choices)
       set(prm, choice.section, choice.name, choice.value);
+    if (scene_is_sound(parameters))
+      place_capsules(prm, parameters, source);
     parameters.check(source);
     parameters.used = parameters_as_prm(prm);
     return parameters;

@@ -27,7 +27,7 @@ namespace tanktread
       result.liquids.unbounded       = parameters.scene.boundary == Boundary::unbounded;
       result.shape                   = make_capsule(parameters.capsule, std::min(parameters.shell_mesh.level, max_level));
       result.stress_free             = make_stress_free_shape(parameters.capsule, result.shape);
-      result.centres                 = parameters.placement.positions();
+      result.places                  = parameters.placement.places();
       result.shell                   = parameters.shell;
       result.moduli                  = {parameters.scene.surface_young_modulus(), parameters.scene.bending_modulus()};
       result.shell_quadrature        = parameters.shell_mesh.quadrature;
@@ -41,7 +41,12 @@ namespace tanktread
     check_extent(const SceneDescription &scene, const double h)
     {
       static const char *const axes   = "xyz";
-      const Eigen::RowVector3d extent = scene.shape.control_points.colwise().maxCoeff() - scene.shape.control_points.colwise().minCoeff();
+      Eigen::RowVector3d       extent = Eigen::RowVector3d::Zero();
+      for (const Place &place : scene.places)
+        {
+          const ControlPoints x = placed(scene.shape.control_points, place);
+          extent                = extent.cwiseMax(x.colwise().maxCoeff() - x.colwise().minCoeff());
+        }
       for (unsigned int d = 0; d < 3; ++d)
         {
           // The enriched interface cannot tell a shell from its image where cells of the fluid are near to both.
@@ -63,8 +68,8 @@ namespace tanktread
       const Capsule           capsule(scene.shape, rule, scene.shell, scene.moduli, scene.stress_free);
       ShellFields             x;
       std::array<double, 3>   periods, half_sides;
-      for (const Eigen::RowVector3d &centre : scene.centres)
-        x.push_back(scene.shape.control_points.rowwise() + centre);
+      for (const Place &place : scene.places)
+        x.push_back(placed(scene.shape.control_points, place));
       for (unsigned int d = 0; d < 3; ++d)
         {
           periods[d]    = scene.box.is_periodic(d) ? scene.box.side[d] : std::numeric_limits<double>::infinity();
@@ -106,10 +111,10 @@ namespace tanktread
   {
     // A coarse control mesh has the shape to a hundredth of a per cent.
     const SceneDescription scene = description(parameters, 3);
-    if (scene.centres.size() > 1 && parameters.scene.viscosity_ratio != 1.)
+    if (scene.places.size() > 1 && parameters.scene.viscosity_ratio != 1.)
       {
         std::ostringstream message;
-        message << "Scene/Viscosity ratio is " << parameters.scene.viscosity_ratio << "; allowed with " << scene.centres.size()
+        message << "Scene/Viscosity ratio is " << parameters.scene.viscosity_ratio << "; allowed with " << scene.places.size()
                 << " capsules in this version: 1";
         throw InputError(message.str());
       }

@@ -32,7 +32,7 @@ namespace tanktread
     , fluid_(communicator, description_.box, description_.fluid_mesh, description_.solver.method)
     , capsule_(description_.shape, quadrature(description_, fluid_.mesh()), description_.shell, description_.moduli, description_.stress_free)
     , elasticity_(capsule_.shell(), capsule_.topology(), communicator)
-    , coupling_(capsule_, description_.centres.size(), description_.solver.interface)
+    , coupling_(capsule_, description_.places.size(), description_.solver.interface)
     , level_(description_.liquids, elasticity_, coupling_, memory_, timings_)
     , solver_(description_.solver, level_, memory_, timings_)
   {}
@@ -42,10 +42,10 @@ namespace tanktread
   Scene::initial_state() const
   {
     State result;
-    for (const Eigen::RowVector3d &centre : description_.centres)
+    for (const Place &place : description_.places)
       {
         result.capsules.emplace_back();
-        result.capsules.back().x     = capsule_.initial().rowwise() + centre;
+        result.capsules.back().x     = placed(capsule_.initial(), place);
         result.capsules.back().force = ControlPoints::Zero(capsule_.n_control_points(), 3);
       }
     return result;

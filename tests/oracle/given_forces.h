@@ -41,7 +41,7 @@ namespace tanktread::oracle
     Eigen::RowVector3d
     centre(const unsigned int c = 0) const
     {
-      return scene.description().centres[c];
+      return scene.description().places[c].centre;
     }
     /** Volume gradient of shell c. */
     const ControlPoints &
@@ -176,7 +176,7 @@ namespace tanktread::oracle
       result.liquids.flow.amplitude  = contrast.flow;
       result.liquids.viscosity_ratio = contrast.ratio;
       result.shape                   = shape;
-      result.centres                 = centres;
+      result.places                  = {centres.begin(), centres.end()};
       result.moduli                  = {0., 0.};
       result.coupling_quadrature     = coupling_quadrature(shape.topology, shape.control_points, Interface::enriched, finest_cell_of(side, mesh));
       result.fluid_mesh              = mesh;

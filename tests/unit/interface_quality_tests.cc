@@ -15,8 +15,8 @@ namespace
   StartedScene
   scene(const CapsuleShapeParameters &capsule, const double finest_cell)
   {
-    SceneDescription result = small_scene({5., 0.}, 1., capsule, tight(1e-6, 1e-3, Interface::enriched), 10., finest_cell);
-    result.centres[0][2]    = 0.3; // the middle of a coarse cell, in which both sheets of a thin capsule lie then
+    SceneDescription result    = small_scene({5., 0.}, 1., capsule, tight(1e-6, 1e-3, Interface::enriched), 10., finest_cell);
+    result.places[0].centre[2] = 0.3; // the middle of a coarse cell, in which both sheets of a thin capsule lie then
     return StartedScene(std::move(result));
   }
 

@@ -100,7 +100,7 @@ TEST(ParticleStress, IsWhatTheWallsFeel)
   SceneDescription     description = small_scene({5., 0.2}, 1., {}, tight(1e-9, 1e-9), side, cell);
   description.shape                = {capsule.shape.topology, capsule.x};
   description.stress_free          = capsule.shape.control_points;
-  description.centres              = {Eigen::RowVector3d::Zero()};
+  description.places               = {Place()};
   StartedScene scene(std::move(description));
   ASSERT_LT(scene.x().col(2).cwiseAbs().maxCoeff(), z_1);
   scene.solver().solve_flow(scene.state);

@@ -67,7 +67,8 @@ TEST(Parameters, EmptyFileGivesDefaults)
   EXPECT_EQ(parameters.scene.shear_number, 0.05);
   EXPECT_EQ(parameters.scene.reduced_bending_modulus, 0.);
   EXPECT_EQ(parameters.scene.box_side, std::vector<double>{10.});
-  EXPECT_EQ(parameters.placement.positions(), std::vector<Eigen::RowVector3d>{Eigen::RowVector3d::Zero()});
+  ASSERT_EQ(parameters.placement.places().size(), 1u);
+  EXPECT_TRUE(parameters.placement.places()[0].centre.isZero(0.));
   EXPECT_EQ(parameters.shell_mesh.level, 3u);
   EXPECT_EQ(parameters.shell_mesh.quadrature, 3u);
   EXPECT_EQ(parameters.output.directory, "output/x");
@@ -145,11 +146,11 @@ TEST(Parameters, FlowsAndBoxesReachTheirMembers)
 TEST(Parameters, CentresReachTheirMembers)
 {
   const File file("subsection Capsule\n  set Centres = 1, 2, -3; 40.5,0,0 ;\\\n 1, -2, 3\nend\n");
-  const auto centres = read_parameters(file.path.string()).placement.positions();
-  ASSERT_EQ(centres.size(), 3u);
-  EXPECT_EQ(centres[0], Eigen::RowVector3d(1., 2., -3.));
-  EXPECT_EQ(centres[1], Eigen::RowVector3d(40.5, 0., 0.));
-  EXPECT_EQ(centres[2], Eigen::RowVector3d(1., -2., 3.));
+  const auto places = read_parameters(file.path.string()).placement.places();
+  ASSERT_EQ(places.size(), 3u);
+  EXPECT_EQ(places[0].centre, Eigen::RowVector3d(1., 2., -3.));
+  EXPECT_EQ(places[1].centre, Eigen::RowVector3d(40.5, 0., 0.));
+  EXPECT_EQ(places[2].centre, Eigen::RowVector3d(1., -2., 3.));
 }
 
 TEST(Parameters, WrongValuesAreRefused)

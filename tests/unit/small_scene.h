@@ -58,7 +58,7 @@ namespace tanktread
     result.box                      = side;
     result.liquids.flow.amplitude   = simple_shear(shear_rate);
     result.shape                    = make_capsule(capsule, 2);
-    result.centres                  = {Eigen::RowVector3d(0.0137, 0.0271, 0.0314)};
+    result.places                   = {Eigen::RowVector3d(0.0137, 0.0271, 0.0314)};
     result.moduli                   = moduli;
     result.fluid_mesh.coarsest_cell = 1.25;
     result.fluid_mesh.finest_cell   = finest_cell;

@@ -73,7 +73,7 @@ namespace
   {
     SceneDescription result = small_scene({5., 0.}, shear_rate, {}, tight(1e-5, 1e-2, interface), 10., 0.3125);
     const double     middle = 1. + 0.5 * gap;
-    result.centres          = {Eigen::RowVector3d(-middle, 0.03, 0.02), Eigen::RowVector3d(middle, 0.03, 0.02)};
+    result.places           = {Eigen::RowVector3d(-middle, 0.03, 0.02), Eigen::RowVector3d(middle, 0.03, 0.02)};
     return result;
   }
 } // namespace

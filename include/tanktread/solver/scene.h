@@ -7,6 +7,7 @@
 #include <tanktread/fluid/box.h>
 #include <tanktread/shell/gaps.h>
 #include <tanktread/solver/newton_solver.h>
+#include <tanktread/surface/place.h>
 
 #include <optional>
 #include <string>
@@ -19,9 +20,9 @@ namespace tanktread
   {
     Box                               box;
     Liquids                           liquids;
-    FittedShape                       shape; // of each capsule, about its centre
+    FittedShape                       shape; // of each capsule, about the origin
     std::optional<ControlPoints>      stress_free;
-    std::vector<Eigen::RowVector3d>   centres = {Eigen::RowVector3d::Zero()};
+    std::vector<Place>                places = {Place()};
     ShellParameters                   shell;
     ShellModuli                       moduli{1., 0.};
     unsigned int                      shell_quadrature = 3; // points a face
