@@ -75,9 +75,9 @@ namespace tanktread
 
 
   Viscosity
-  Coupling::viscosity(const ShellConfiguration &shell) const
+  Coupling::viscosity(const ShellConfigurations &shells) const
   {
-    return ShellViscosity(*space_)(SurfaceDistance(space_->mesh, shell.patches()), contrast_.ratio);
+    return ShellViscosity(*space_)(shells, contrast_.ratio);
   }
 
 

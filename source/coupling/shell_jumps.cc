@@ -38,7 +38,7 @@ namespace tanktread
     if (shells_.empty())
       return;
     n_coarse_cut_cells_ = dealii::Utilities::MPI::sum(n_coarse_cut_cells_, space_.mesh.communicator());
-    pairs_.reinit(space_, shells_);
+    pairs_.reinit(space_, shells_, viscosity_ratio_);
   }
 
 

@@ -12,9 +12,9 @@ namespace tanktread
     /** A cut cell's nodes with what its forms are made of. */
     struct CutSide
     {
-      CutSide(const NodeDistances &nodes, const double h)
+      CutSide(const NodeDistances &nodes, const double h, const double viscosity_ratio)
         : nodes(nodes)
-        , q(node_amplitudes(nodes, 1.))
+        , q(node_amplitudes(nodes, viscosity_ratio))
       {
         std::array<double, 27> scaled;
         for (unsigned int a = 0; a < 27; ++a)
@@ -36,8 +36,9 @@ namespace tanktread
     }
 
 
+    /** With the viscosity 1 + (lambda - 1)(chi_c + chi_d). */
     std::array<std::array<double, 8>, 8>
-    laplace_products(const CutSide &c, const CutSide &d)
+    laplace_products(const CutSide &c, const CutSide &d, const double lambda)
     {
       const PartialCellMatrices           &whole  = whole_cell_matrices();
       std::array<std::array<double, 8>, 8> result = {};
@@ -46,7 +47,8 @@ namespace tanktread
           std::array<double, 8> row = {};
           for (unsigned int b = 0; b < 27; ++b)
             {
-              const double entry = product(c.nodes.inside[a], d.nodes.inside[b], c.in.laplace[a][b], d.in.laplace[a][b], whole.laplace[a][b]);
+              const bool   i_c = c.nodes.inside[a], i_d = d.nodes.inside[b];
+              const double entry = product(i_c, i_d, (i_c ? 1. : lambda) * c.in.laplace[a][b], (i_d ? 1. : lambda) * d.in.laplace[a][b], whole.laplace[a][b]);
               for (unsigned int w = 0; w < 8; ++w)
                 row[w] += entry * d.q[b][w];
             }
@@ -85,10 +87,11 @@ namespace tanktread
 
 
   void
-  ShellPairs::reinit(const TaylorHoodSpace &space, const std::vector<JumpEnrichment> &shells)
+  ShellPairs::reinit(const TaylorHoodSpace &space, const std::vector<JumpEnrichment> &shells, const double viscosity_ratio)
   {
-    space_  = &space;
-    shells_ = &shells;
+    space_           = &space;
+    shells_          = &shells;
+    viscosity_ratio_ = viscosity_ratio;
     points_.clear();
     cells_.clear();
     std::unordered_map<unsigned int, std::vector<std::pair<unsigned int, const JumpEnrichment::CutCell *>>> cutters; // of each cell, shells in order
@@ -113,7 +116,7 @@ namespace tanktread
     const unsigned int    group    = averages.group_of_cell(cut.cell);
     if (group == VertexAverages::no_points)
       return;
-    const NodeAmplitudes q = node_amplitudes(cut.nodes, 1.);
+    const NodeAmplitudes q = node_amplitudes(cut.nodes, viscosity_ratio_);
     SharedPoints         shared{shell, other, cut.cell, group, {}};
     for (unsigned int i = averages.groups()[group].begin; i < averages.groups()[group].end; ++i)
       shared.psi.push_back(psi_outside(cut.nodes, q, averages.unit_position(i)));
@@ -125,8 +128,8 @@ namespace tanktread
   ShellPairs::add_cell(const unsigned int first, const unsigned int second, const JumpEnrichment::CutCell &cut_first, const JumpEnrichment::CutCell &cut_second)
   {
     const double  h = space_->velocity->cell_sizes()[cut_first.cell];
-    const CutSide c(cut_first.nodes, h), d(cut_second.nodes, h);
-    cells_.push_back({first, second, cut_first.cell, laplace_products(c, d), mixed_products(c, d), mixed_products(d, c)});
+    const CutSide c(cut_first.nodes, h, viscosity_ratio_), d(cut_second.nodes, h, viscosity_ratio_);
+    cells_.push_back({first, second, cut_first.cell, laplace_products(c, d, viscosity_ratio_), mixed_products(c, d), mixed_products(d, c)});
   }
 
 

@@ -24,12 +24,10 @@ namespace tanktread
   }
 
 
-  Viscosity
-  ShellViscosity::operator()(const SurfaceDistance &distance, const double ratio) const
+  void
+  ShellViscosity::add_shell(const SurfaceDistance &distance, Parts &parts) const
   {
-    const double     least = std::min(1., ratio);
     const CellSides  sides(distance.runs_nearby());
-    CutCells         cut;
     const Lattice   &low   = distance.low();
     const auto       n     = space_.mesh.n_cubes(space_.mesh.finest_level());
     const NodeSpace &nodes = *space_.velocity;
@@ -40,23 +38,21 @@ namespace tanktread
           cell[d] = low[d] + ((cell[d] - low[d]) % n[d] + n[d]) % n[d];
       return cell;
     };
-    std::vector<double> phi(nodes.n_local(), std::nan("")), mu(27 * cells_.size(), 1.);
+    std::vector<double> phi(nodes.n_local(), std::nan(""));
     for (std::size_t i = 0; i < cells_.size(); ++i)
       {
         const auto &[position, size] = cells_[i];
-        double *const values         = &mu[27 * i];
-        const auto    centre         = image({position[0] + size / 2, position[1] + size / 2, position[2] + size / 2});
-        Side          side           = sides.at(centre);
+        const auto centre            = image({position[0] + size / 2, position[1] + size / 2, position[2] + size / 2});
+        Side       side              = sides.at(centre);
         // A cell twice as large may touch the shell's neighbourhood, not be all of it.
         for (int k = 0; size == 2 && side == Side::near && k < 8; ++k)
           side = sides.at(image({position[0] + k % 2, position[1] + k / 2 % 2, position[2] + k / 4}));
         if (size > 1 && side == Side::near)
           side = distance.at({2 * centre[0], 2 * centre[1], 2 * centre[2]}) < 0. ? Side::inside : Side::outside;
+        if (side == Side::inside)
+          parts.is_inside[i] = true;
         if (side != Side::near)
-          {
-            std::fill(values, values + 27, side == Side::inside ? ratio : 1.);
-            continue;
-          }
+          continue;
         std::array<double, 27> distances;
         for (int a = 0; a < 27; ++a)
           {
@@ -64,19 +60,43 @@ namespace tanktread
             double            &value = phi[node];
             if (std::isnan(value) || node + 1 == nodes.n_local()) // the last place is that of all wall nodes
               value = distance.at({2 * centre[0] + a % 3, 2 * centre[1] + a / 3 % 3, 2 * centre[2] + a / 9});
-            distances[a] = value;
+            distances[a] = value / nodes.cell_sizes()[i];
           }
         const auto n_inside = std::count_if(distances.begin(), distances.end(), [](const double d) { return d < 0.; });
-        std::fill(values, values + 27, n_inside == 27 ? ratio : n_inside == 0 ? 1. : least);
-        if (n_inside == 0 || n_inside == 27)
-          continue;
-        for (double &d : distances)
-          d /= nodes.cell_sizes()[i];
-        const CellWeights inside = inside_weights(distances), &whole = whole_weights();
-        cut.cells.push_back(i);
-        for (unsigned int q = 0; q < 125; ++q)
-          cut.weights.push_back(ratio > 1. ? (ratio - 1.) * inside[q] : (1. - ratio) * (whole[q] - inside[q]));
+        if (n_inside == 27)
+          parts.is_inside[i] = true;
+        else if (n_inside > 0)
+          {
+            const CellWeights inside = inside_weights(distances);
+            CellWeights      &sum    = parts.inside.try_emplace(i, CellWeights{}).first->second;
+            for (unsigned int q = 0; q < 125; ++q)
+              sum[q] += inside[q];
+          }
       }
+  }
+
+
+  Viscosity
+  ShellViscosity::operator()(const ShellConfigurations &shells, const double ratio) const
+  {
+    Parts parts;
+    parts.is_inside.assign(cells_.size(), false);
+    for (const auto &shell : shells)
+      add_shell(SurfaceDistance(space_.mesh, shell->patches()), parts);
+    const double        least = std::min(1., ratio);
+    std::vector<double> mu;
+    mu.reserve(27 * cells_.size());
+    for (std::size_t i = 0; i < cells_.size(); ++i)
+      mu.insert(mu.end(), 27, parts.is_inside[i] ? ratio : parts.inside.count(i) > 0 ? least : 1.);
+    CutCells           cut;
+    const CellWeights &whole = whole_weights();
+    for (const auto &[cell, inside] : parts.inside)
+      if (!parts.is_inside[cell])
+        {
+          cut.cells.push_back(cell);
+          for (unsigned int q = 0; q < 125; ++q)
+            cut.weights.push_back(ratio > 1. ? (ratio - 1.) * inside[q] : (1. - ratio) * (whole[q] - inside[q]));
+        }
     return {std::move(mu), least, std::move(cut)};
   }
 } // namespace tanktread

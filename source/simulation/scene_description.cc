@@ -111,11 +111,11 @@ namespace tanktread
   {
     // A coarse control mesh has the shape to a hundredth of a per cent.
     const SceneDescription scene = description(parameters, 3);
-    if (scene.places.size() > 1 && parameters.scene.viscosity_ratio != 1.)
+    if (scene.places.size() > 1 && parameters.scene.viscosity_ratio != 1. && scene.liquids.unbounded)
       {
         std::ostringstream message;
         message << "Scene/Viscosity ratio is " << parameters.scene.viscosity_ratio << "; allowed with " << scene.places.size()
-                << " capsules in this version: 1";
+                << " capsules and Scene/Boundary = unbounded in this version: 1";
         throw InputError(message.str());
       }
     check_extent(scene, parameters.fluid_mesh.finest_cell);

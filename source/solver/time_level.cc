@@ -62,8 +62,8 @@ namespace tanktread
     , flow_(liquids.flow.at(0.))
   {
     coupling.set_viscosity_contrast({liquids.viscosity_ratio, flow_});
-    if (has_viscosities() && (coupling.n_capsules() > 1 || liquids.flow.frequency != 0.))
-      throw std::logic_error("TimeLevel: another viscosity inside is for one capsule in a steady flow.");
+    if (has_viscosities() && liquids.flow.frequency != 0.)
+      throw std::logic_error("TimeLevel: another viscosity inside is for steady flows.");
     if (has_inertia() && liquids.unbounded)
       throw std::logic_error("TimeLevel: inertia is not for unbounded liquid.");
   }
@@ -126,7 +126,7 @@ namespace tanktread
     const bool for_preconditioner = distance(state, preconditioner_x_) > 0.25 * finest_cell();
     if (for_preconditioner)
       preconditioner_x_ = memory_.viscosity_x;
-    fluid_->set_viscosity(coupling_.viscosity(*shells(state)[0]), for_preconditioner);
+    fluid_->set_viscosity(coupling_.viscosity(shells(state)), for_preconditioner);
     if (unbounded_)
       unbounded_->set_viscosity(*fluid_->viscosity());
     undisturbed_load_.reinit(fluid_->space().velocity->partitioner());

@@ -227,8 +227,8 @@ TEST(Parameters, CapsulesWhereTheyCannotBeAreRefused)
   expect(error_at("0,0,0; 0,0,0"), "capsules 1 and 2 overlap by 0 a");
   expect(error_at("0,0,4.5"), "x.prm:3: Capsule/Centres: a capsule reaches 0.499");
   expect(error_at("0,0,4.5"), "beyond a face of the box with prescribed velocity; allowed: inside.");
-  expect(error_at("0,0,0; 3,0,0", {"Scene/Viscosity ratio=2"}),
-         "--set \"Scene/Viscosity ratio=2\": Scene/Viscosity ratio is 2; allowed with 2 capsules in this version: 1");
+  expect(error_at("0,0,0; 2.5,0,0", {"Scene/Viscosity ratio=2", "Scene/Boundary=unbounded"}),
+         "--set \"Scene/Viscosity ratio=2\": Scene/Viscosity ratio is 2; allowed with 2 capsules and Scene/Boundary = unbounded in this version: 1");
   EXPECT_EQ(error_at("0,0,0; 2.1,0,0; 50,4.9,0; 0,2.2,3.9"), "");
 
   // Too near to its own image for the enriched interface, or through it.

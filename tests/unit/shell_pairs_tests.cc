@@ -49,8 +49,8 @@ namespace
   /** Spheres at rest in a box of 10a. */
   struct Spheres : oracle::GivenForces
   {
-    explicit Spheres(const Centres &centres, const Interface interface = Interface::enriched)
-      : GivenForces(make_capsule({}, 2), interface, 10., {finest_cell, 2.5, 1.5}, centres)
+    explicit Spheres(const Centres &centres, const Interface interface = Interface::enriched, const double viscosity_ratio = 1., const double h = finest_cell)
+      : GivenForces(make_capsule({}, 2), interface, 10., {h, 2.5, 1.5}, centres, {viscosity_ratio, {}})
     {}
 
     /** Smooth forces of wave number k, others on each shell. */
@@ -135,9 +135,9 @@ namespace
 TEST(ShellPairs, PowerOfTheShellsIsPowerReceivedByTheFluid)
 {
   for (const Centres &centres : {pair(0.3 * finest_cell), triangle(0.3 * finest_cell)})
-    for (const Interface interface : {Interface::plain, Interface::enriched})
+    for (const auto &[interface, viscosity_ratio] : {std::pair(Interface::plain, 1.), std::pair(Interface::enriched, 1.), std::pair(Interface::enriched, 5.)})
       {
-        const Spheres     scene(centres, interface);
+        const Spheres     scene(centres, interface, viscosity_ratio);
         const ShellFields f = scene.waves(2.);
         FluidBlockVector  load, fields = scene.rough_flow();
         scene.fluid.space().reinit(load);
@@ -158,9 +158,10 @@ TEST(ShellPairs, PowerOfTheShellsIsPowerReceivedByTheFluid)
 
 TEST(ShellPairs, OwnVelocityIsSymmetric)
 {
-  for (const Centres &centres : {pair(0.3 * finest_cell), triangle(0.3 * finest_cell)})
+  for (const auto &[centres, viscosity_ratio] :
+       {std::pair(pair(0.3 * finest_cell), 1.), std::pair(triangle(0.3 * finest_cell), 1.), std::pair(triangle(0.3 * finest_cell), 0.2)})
     {
-      const Spheres     scene(centres);
+      const Spheres     scene(centres, Interface::enriched, viscosity_ratio);
       const ShellFields f = scene.waves(2.), g = scene.waves(3.);
       EXPECT_GT(scene.n_shared_cells(), 0u);
       EXPECT_NEAR(dot(f, scene.moved_by_themselves(g)), dot(g, scene.moved_by_themselves(f)), 1e-12 * std::abs(dot(f, scene.moved_by_themselves(f))));
@@ -203,24 +204,67 @@ TEST(ShellPairs, NumbersOfTheCapsulesDoNotMatter)
 
 TEST(ShellPairs, ShellsFarFromEachOtherMoveThemselvesAsAlone)
 {
-  const auto change = [](const double gap) {
-    const Centres     centres = pair(gap);
-    const Spheres     both(centres);
-    const ShellFields together = both.moved_by_themselves(both.waves(2.));
-    EXPECT_EQ(both.n_shared_cells() > 0, gap < finest_cell);
-    double result = 0.;
-    for (unsigned int c = 0; c < 2; ++c)
-      {
-        const Spheres alone({centres[c]});
-        result = std::max(result, difference({together[c]}, alone.moved_by_themselves({both.waves(2.)[c]})));
-      }
-    return result;
-  };
-  const double near = change(0.3 * finest_cell);
-  if (is_root())
-    std::cout << "Change by the other shell: " << near << std::endl;
-  EXPECT_GT(near, 0.01);
-  EXPECT_LT(change(3.1 * finest_cell), 1e-12);
+  for (const double viscosity_ratio : {1., 5.})
+    {
+      const auto change = [&](const double gap) {
+        const Centres     centres = pair(gap);
+        const Spheres     both(centres, Interface::enriched, viscosity_ratio);
+        const ShellFields together = both.moved_by_themselves(both.waves(2.));
+        EXPECT_EQ(both.n_shared_cells() > 0, gap < finest_cell);
+        double result = 0.;
+        for (unsigned int c = 0; c < 2; ++c)
+          {
+            const Spheres alone({centres[c]}, Interface::enriched, viscosity_ratio);
+            result = std::max(result, difference({together[c]}, alone.moved_by_themselves({both.waves(2.)[c]})));
+          }
+        return result;
+      };
+      const double near = change(0.3 * finest_cell);
+      if (is_root())
+        std::cout << "Change by the other shell: " << near << std::endl;
+      EXPECT_GT(near, 0.005);
+      EXPECT_LT(change(3.1 * finest_cell), 1e-12);
+    }
+}
+
+
+TEST(ShellPairs, ViscosityHasTheVolumesOfAll)
+{
+  for (const double viscosity_ratio : {5., 0.2})
+    {
+      const Spheres scene(triangle(0.3 * finest_cell), Interface::enriched, viscosity_ratio);
+      const auto   &mu     = *scene.fluid.viscosity();
+      const auto   &h      = scene.fluid.space().velocity->cell_sizes();
+      double        excess = 0., volume = 0.;
+      for (unsigned int cell = 0; cell < h.size(); ++cell)
+        {
+          excess += std::pow(h[cell], 3) * (mu.means()[cell] - 1.);
+          EXPECT_GT(mu.means()[cell] - mu.least(), -1e-6); // slivers are approximated
+          EXPECT_LT(mu.means()[cell] - std::max(1., viscosity_ratio), 1e-6);
+        }
+      for (const auto &shell : scene.shells)
+        volume += shell->volume();
+      EXPECT_NEAR(dealii::Utilities::MPI::sum(excess, MPI_COMM_WORLD), (viscosity_ratio - 1.) * volume, 2e-4 * std::abs(viscosity_ratio - 1.) * volume);
+    }
+}
+
+
+TEST(ShellPairs, FlowsWithTwoViscositiesTend)
+{
+  // Beside cells of half the size; the shells share cells of either.
+  for (const double gap : {0.3, 3.1})
+    {
+      const auto flow = [&](const double h) {
+        Spheres scene(pair(gap * finest_cell), Interface::enriched, 5., h);
+        return scene.flow(scene.waves(1.5), 1e-8).velocity;
+      };
+      const ShellFields finest = flow(0.5 * finest_cell);
+      const double      error = difference(flow(finest_cell), finest), coarse_error = difference(flow(2. * finest_cell), finest);
+      if (is_root())
+        std::cout << "gap of " << gap << " cells: differences " << coarse_error << ", " << error << std::endl;
+      EXPECT_LT(error, 0.012);
+      EXPECT_LT(error, 0.4 * coarse_error);
+    }
 }
 
 

@@ -84,9 +84,9 @@ namespace tanktread
       return interface_ == Interface::plain;
     }
 
-    /** Viscosity of the fluid's cells with the shell of the only capsule there. Its coupling surface needs second derivatives. Collective. */
+    /** Viscosity of the fluid's cells with the shells there. Their coupling surfaces need second derivatives. Collective. */
     Viscosity
-    viscosity(const ShellConfiguration &shell) const;
+    viscosity(const ShellConfigurations &shells) const;
 
     /** Positions of all points in the fluid. */
     std::vector<dealii::Point<3>>

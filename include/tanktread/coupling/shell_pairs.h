@@ -17,21 +17,25 @@ namespace tanktread
    *     <g, Q_cd f> = <g, psi_d f> + <f, psi_c g> - a(psi_c g, psi_d f) + (eta_d f, div psi_c g) + (eta_c g, div psi_d f),   Q_dc = Q_cd^T.
    *
    * Shells do not overlap, chi_c chi_d = 0, so products of their jumps are (chi_c - i_c,a)(chi_d - i_d,b) = i_c,a i_d,b - i_d,b chi_c - i_c,a chi_d: integrals
-   * over the insides are enough. One viscosity only.
+   * over the insides are enough. With another viscosity inside, 1 + (lambda - 1)(chi_c + chi_d), what the inside of d changes in the shared cells in psi_c's own forms and load, and grad psi_d in
+   * the mean gradient at c, are left out: errors there are of first order.
    */
   class ShellPairs
   {
   public:
     /** Finds the cells; to be called when all shells have moved. `space` and `shells` are kept by reference. */
     void
-    reinit(const TaylorHoodSpace &space, const std::vector<JumpEnrichment> &shells);
+    reinit(const TaylorHoodSpace &space, const std::vector<JumpEnrichment> &shells, double viscosity_ratio);
 
     /**
      * duals, values += Q_cd f_d for all pairs, in the arrays of JumpEnrichment::add_self_response(), one for each shell but `values` and `at_points`, which
      * hold the points of all of them.
      */
     void
-    add_response(const std::vector<double> &at_points, const std::vector<VertexArray> &forces, std::vector<VertexArray> &duals, std::vector<double> &values) const;
+    add_response(const std::vector<double>      &at_points,
+                 const std::vector<VertexArray> &forces,
+                 std::vector<VertexArray>       &duals,
+                 std::vector<double>            &values) const;
 
     /** Cells of this rank, counted for each pair, in which two shells meet. */
     unsigned int
@@ -52,7 +56,7 @@ namespace tanktread
     struct SharedCell
     {
       unsigned int                                       first, second, cell;
-      std::array<std::array<double, 8>, 8>               laplace;           // [v][w]: a(psi_first,v, psi_second,w)
+      std::array<std::array<double, 8>, 8>               laplace;            // [v][w]: a(psi_first,v, psi_second,w)
       std::array<std::array<std::array<float, 4>, 8>, 8> mixed_first_second; // [v][j]: (eta_second,j, grad psi_first,v)
       std::array<std::array<std::array<float, 4>, 8>, 8> mixed_second_first; // [v][j]: (eta_first,j, grad psi_second,v)
     };
@@ -62,8 +66,9 @@ namespace tanktread
     void
     add_cell(unsigned int first, unsigned int second, const JumpEnrichment::CutCell &cut_first, const JumpEnrichment::CutCell &cut_second);
 
-    const TaylorHoodSpace             *space_  = nullptr;
-    const std::vector<JumpEnrichment> *shells_ = nullptr;
+    const TaylorHoodSpace             *space_           = nullptr;
+    const std::vector<JumpEnrichment> *shells_          = nullptr;
+    double                             viscosity_ratio_ = 1.;
     std::vector<SharedPoints>          points_;
     std::vector<SharedCell>            cells_;
   };

@@ -1,18 +1,23 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Part of Tanktread: the viscosity of the liquids inside and outside the shell, cell by cell.
+// Part of Tanktread: the viscosity of the liquids inside and outside all shells, cell by cell.
 
 #ifndef tanktread_coupling_shell_viscosity_h
 #define tanktread_coupling_shell_viscosity_h
 
 #include <tanktread/coupling/surface_distance.h>
+#include <tanktread/fluid/cell_weights.h>
 #include <tanktread/fluid/viscosity.h>
+#include <tanktread/shell/shell_configuration.h>
+
+#include <map>
+#include <vector>
 
 namespace tanktread
 {
   /**
-   * Tells the cells inside the shell from those outside. Cells that it cuts, where the distances of the 27 nodes have both signs, have the smaller viscosity
+   * Tells the cells inside shells from those outside. Cells that a shell cuts, where the distances of the 27 nodes have both signs, have the smaller viscosity
    * and weights for what there is more on the side of the larger one, see inside_weights(). Of the other cells those are inside that the shell's neighbourhood
-   * separates from the rest of the box, or whose distances are negative.
+   * separates from the rest of the box, or whose distances are negative. Insides do not overlap: where two shells cut a cell their weights add.
    */
   class ShellViscosity
   {
@@ -20,9 +25,9 @@ namespace tanktread
     /** Keeps `space` by reference. */
     explicit ShellViscosity(const TaylorHoodSpace &space);
 
-    /** 1 outside, `ratio` inside. @param distance from the shell on the mesh of `space`. */
+    /** 1 outside, `ratio` inside. Coupling surfaces need second derivatives. */
     Viscosity
-    operator()(const SurfaceDistance &distance, double ratio) const;
+    operator()(const ShellConfigurations &shells, double ratio) const;
 
   private:
     struct Cell
@@ -30,6 +35,16 @@ namespace tanktread
       Lattice position; // of the lower corner
       int     size;     // in finest cells
     };
+
+    /** What lies inside shells. */
+    struct Parts
+    {
+      std::vector<char>                   is_inside; // all of a cell
+      std::map<unsigned int, CellWeights> inside;    // of cells that are cut
+    };
+
+    void
+    add_shell(const SurfaceDistance &distance, Parts &parts) const;
 
     const TaylorHoodSpace &space_;
     std::vector<Cell>      cells_;
