@@ -249,7 +249,7 @@ TEST(ShellPairs, ViscosityHasTheVolumesOfAll)
 }
 
 
-TEST(ShellPairs, FlowsWithTwoViscositiesTend)
+TEST(ShellPairs, OrderOfFlowsWithTwoViscosities)
 {
   // Beside cells of half the size; the shells share cells of either.
   for (const double gap : {0.3, 3.1})
