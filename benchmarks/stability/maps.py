@@ -55,6 +55,19 @@ def near(neighbour, settings, gaps=(1, 0.3, 0.1, 0.05, 0.02)):
     return [Row(f"{neighbour} {gap:g}a", settings(gap), f"{neighbour} {gap:g}") for gap in gaps]
 
 
+# G and kappa hat of the figures of Le (2010), a scheme and a step a column; the last is what the others are compared with.
+PAPER = [(0.005, 0.01), (0.005, 0.02), (0.005, 0.05), (0.008, 0.002), (0.008, 0.005), (0.05, 0), (0.05, 0.005), (0.05, 0.01), (0.05, 0.025), (0.05, 0.0375), (0.2, 0), (0.2, 0.04), (0.2, 0.1), (0.2, 0.15),
+         (0.5, 0.01), (0.5, 0.04)]
+PAPER_ROWS = [Row(f"G {G:g}, κ̂ {khat:g}", {"Scene/Shear number G": f"{G:g}", "Scene/Reduced bending modulus": f"{khat:g}"}, f"{G} {khat}") for G, khat in PAPER]
+NO_MEMBRANE = {"Scene/Reduced bending modulus": "1", "Capsule/Membrane law": "none"}
+RELAXING_ROWS = [Row("ellipsoid", NO_MEMBRANE, "ellipsoid"), Row("biconcave", {**NO_MEMBRANE, "Capsule/Shape": "biconcave"}, "biconcave")]
+
+
+def schemes_at(step, fine):
+    choices = [(scheme, step) for scheme in SCHEMES] + [("SDIRK3", fine)]
+    return [Column(f"{scheme}, {length:g}", {**STEPS_ALONE, "Time/Scheme": scheme, "Time/Step": f"{length:g}"}) for scheme, length in choices]
+
+
 MAPS = [
     Map("schemes_shear", "Steps in shear", "sphere", {}, "scheme, κ̂", SCHEME_ROWS, "γ̇Δt", steps(2, 1, 0.5, 0.1),
         "Steps of one length, without a bound on their local error (Time/Tolerance = 0)."),
@@ -62,6 +75,8 @@ MAPS = [
         "The shell moves with the velocity of the last step: what one has instead of Newton's method, at its limit of stability."),
     Map("schemes_relaxation", "Steps in relaxation", "relaxing", {}, "scheme, κ̂", SCHEME_ROWS, "Δt in μa³/κ_B", steps(0.5, 0.25, 0.1, 0.02),
         "With κ̂ = 0.001 the membrane is 1000 times stiffer than the bending by which time is measured."),
+    Map("paper_shear", "Steps of a half at the κ̂ of Le (2010)", "sphere", {"Scene/End time": "3"}, "G, κ̂", PAPER_ROWS, "scheme, γ̇Δt", schemes_at(0.5, 0.1), "Spheres, to γ̇t = 3."),
+    Map("paper_relaxation", "The same in relaxation", "relaxing", {"Scene/End time": "2"}, "shape", RELAXING_ROWS, "scheme, Δt in μa³/κ_B", schemes_at(0.5, 0.1), "Bending alone."),
     Map("explicit_relaxation", "Explicit steps in relaxation", "relaxing", {**EXPLICIT, "Scene/End time": "0.03"}, "κ̂", rows("Scene/Reduced bending modulus", KHAT), "Δt in μa³/κ_B",
         steps(0.01, 0.003, 0.001, 0.0003, 0.0001, full=[0.0001]), "As in shear."),
     Map("wrinkles", "Small G with and without bending", "sphere", {}, "G, κ̂",

@@ -5,6 +5,7 @@
 import collections
 import math
 
+import explicit_limit
 import maps
 import outcomes
 from report_parts import show, table
@@ -98,6 +99,27 @@ def overview(rows):
     return table(["map", *names, "not made", "CPU s"], body)
 
 
+def at_the_limit(rows):
+    """The longest stable explicit step on a fine mesh, and what a run with it would cost; nothing if it has not been made."""
+    found = explicit_limit.figures(rows)
+    if not found:
+        return ""
+    body = [[row["coupling"], row["scheme"], show(row["step"], 3), show(row["steps"], 3), row["outcome"], show(row["D"], 5), show(row["cpu_a_step"], 3)] for row in rows]
+    cheapest, truth = found["cheapest"], found["truth"]
+    steps, seconds = found["implicit_step"] / found["explicit_step"], found["explicit_seconds"] / cheapest["cpu_seconds"]
+    return f"""
+## Explicit steps on a fine mesh
+
+`sphere.prm` with G = 0.05, κ̂ = 0.0375, finest cells of 10a/128, 2562 control points, in unbounded liquid (box 7.5a). Explicit trials of {explicit_limit.STEPS} steps, halved until stable; implicit runs to γ̇t = {explicit_limit.END:g}.
+Made by `benchmarks/stability/run.py --explicit-limit`.
+
+- Longest stable steps: explicit {found["explicit_step"]:.3g}, implicit {found["implicit_step"]:g}: a ratio of {steps:.0f} (wanted: 300).
+- To γ̇t = {explicit_limit.END:g} with D right to {100 * explicit_limit.RIGHT:g} %: explicit steps would take {found["explicit_seconds"]:.0f} CPU seconds (steps counted, the seconds of one measured), {cheapest["scheme"]} with steps of {cheapest["step"]:g} took
+  {cheapest["cpu_seconds"]:.0f}, D within {100 * abs(cheapest["D"] / truth["D"] - 1):.2g} % of {truth["scheme"]} with {truth["step"]:g}: 1/{seconds:.0f} of it (wanted: 1/50).
+
+""" + table(["coupling", "scheme", "γ̇Δt", "steps", "outcome", "D at the end", "CPU s a step"], body)
+
+
 HEAD = """# Stability
 
 How runs end where steps, meshes, materials and neighbours become too hard: maps of short runs on coarse meshes, one rank each. Made by
@@ -125,6 +147,7 @@ def page(notes, rows, figure):
     text += "\n## All maps\n\n“Not made”: runs of the full mode that are not in the table.\n\n" + overview(rows)
     text += ("\n## Explicit beside implicit steps\n\nCPU seconds a unit of time of the cheapest runs whose D is within "
              f"{100 * RIGHT:g} % of that of the finest steps; explicit runs are shorter, and compared among themselves.\n\n" + explicit_beside_implicit(rows))
+    text += at_the_limit(explicit_limit.read())
     for map_ in maps.MAPS:
         found = [row for row in rows if row["map"] == map_.name]
         if not found:

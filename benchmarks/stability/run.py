@@ -25,6 +25,7 @@ python_packages.need("numpy", "matplotlib")
 import run_scenes  # noqa: E402
 import run_table  # noqa: E402
 
+import explicit_limit  # noqa: E402
 import maps  # noqa: E402
 import outcomes  # noqa: E402
 
@@ -39,6 +40,7 @@ def arguments():
     parser.add_argument("--limit", type=int, help="CPU seconds of a run (default: 60, with --quick 30)")
     parser.add_argument("--draw", action="store_true", help="compute nothing: chart and page of outcomes.csv, of output/stability or else of the repository")
     parser.add_argument("--doc", action="store_true", help="renew the page, the figure and the table of outcomes in the repository")
+    parser.add_argument("--explicit-limit", action="store_true", help="the longest stable explicit step on a fine mesh, beside implicit steps (an hour): renews explicit_limit.csv first")
     parser.add_argument("--validate", action="store_true", help="compute nothing: whether the program takes the settings of all rows, in their last column")
     args = parser.parse_args()
     unknown = set(args.maps.split(",")) - set(names)
@@ -86,6 +88,10 @@ def main():
         return validate(args)
     import chart  # not before: matplotlib takes a second
     import report
+    if args.explicit_limit:
+        args.cpu_limit = None
+        explicit_limit.measure(args)
+        args.draw = True
     file = outcomes.OUTPUT / "outcomes.csv"
     run_table.renew(args, pathlib.Path(__file__).resolve().parent, file, outcomes.NUMBERS, lambda: outcomes.write(file, *measure(args)), chart.draw, report.page)
     return 0

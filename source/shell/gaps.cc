@@ -2,12 +2,14 @@
 // Part of Tanktread: how near shells come to each other.
 
 #include <tanktread/shell/gaps.h>
+#include <tanktread/surface/surface_geometry.h>
 
 #include <boost/geometry/geometry.hpp>
 #include <boost/geometry/index/rtree.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <utility>
 
@@ -16,6 +18,8 @@ namespace tanktread
   namespace
   {
     namespace geometry = boost::geometry;
+
+    constexpr double least_turn = -0.9; // cosine between the normals of two sheets
 
     /** A shell's points to look up, made when they are needed. */
     class Surface
@@ -49,6 +53,29 @@ namespace tanktread
       box_distance(const Surface &other, const Eigen::RowVector3d &shift) const
       {
         return (low_ - other.high_ - shift).cwiseMax(other.low_ + shift - high_).cwiseMax(0.).norm();
+      }
+
+      /** Smallest distance of its points from those parts of itself that face the other way, within `reach`. */
+      double
+      distance_to_opposite(const double reach)
+      {
+        const ControlPoints n      = normals(shell_.capsule().coupling_surface(), shell_.x());
+        double              result = std::numeric_limits<double>::infinity();
+        std::vector<Value>  near;
+        for (Eigen::Index q = 0; q < n.rows(); ++q)
+          {
+            const Eigen::RowVector3d y = points().row(q), side = Eigen::RowVector3d::Constant(std::min(reach, result)), low = y - side, high = y + side;
+            near.clear();
+            tree().query(geometry::index::intersects(geometry::model::box<Point>(Point(low[0], low[1], low[2]), Point(high[0], high[1], high[2]))),
+                         std::back_inserter(near));
+            const auto distance = [&](const Value &found) {
+              return n.row(q).dot(n.row(found.second)) < least_turn ? (points().row(found.second) - y).norm() : std::numeric_limits<double>::infinity();
+            };
+            for (const Value &found : near)
+              if (distance(found) < std::min(reach, result))
+                result = distance(found);
+          }
+        return result;
       }
 
       const ControlPoints &
@@ -112,6 +139,13 @@ namespace tanktread
       return result;
     }
   } // namespace
+
+
+  double
+  smallest_self_gap(const ShellConfiguration &shell, const double reach)
+  {
+    return Surface(shell).distance_to_opposite(reach);
+  }
 
 
   ShellGap

@@ -128,7 +128,10 @@ namespace tanktread
             {"detail", o.shape.detail},
             {"detail_ratio", o.shape.detail_ratio},
             {"area_without_jumps", o.interface.without_jumps},
-            {"area_folded", o.interface.folded}};
+            {"area_folded", o.interface.folded},
+            {"self_gap", o.self_gap},
+            {"local_error", step.local_error},
+            {"energy_rise", step.energy_rise}};
   }
 
 

@@ -3,6 +3,7 @@
 
 #include <tanktread/simulation/resolution_monitor.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -39,17 +40,23 @@ namespace tanktread
     context_.bends            = parameters.scene.bending_modulus() > 0. || parameters.shell.thickness > 0.;
     context_.moments_alone    = context_.bends && parameters.shell.form == BendingForm::moment_only;
     context_.is_explicit      = parameters.solver.coupling == TimeCoupling::explicit_euler;
+    context_.order            = order(parameters.time.scheme);
+    context_.step             = parameters.time.step;
+    context_.steps_are_fixed  = parameters.time.tolerance == 0.;
+    context_.at_rest          = scene.description().liquids.flow.amplitude.is_zero();
   }
 
 
   void
   ResolutionMonitor::measure(const State &state, std::vector<CapsuleObservables> &capsules) const
   {
-    const Timings::Scope scope(scene_.timings(), "- resolution");
-    const ShellJumps    &jumps = scene_.coupling().jumps();
+    const Timings::Scope       scope(scene_.timings(), "- resolution");
+    const ShellJumps          &jumps  = scene_.coupling().jumps();
+    const ShellConfigurations &shells = scene_.level().shells(state);
     for (std::size_t c = 0; c < capsules.size(); ++c)
       {
-        capsules[c].shape = mesh_quality_(state.capsules[c].x);
+        capsules[c].shape    = mesh_quality_(state.capsules[c].x);
+        capsules[c].self_gap = smallest_self_gap(*shells[c], 2. * context_.finest_cell);
         if (!jumps.are_none())
           capsules[c].interface = interface_quality(jumps.shells()[c], scene_.communicator());
       }
@@ -69,14 +76,17 @@ namespace tanktread
         of(figures, Concern::wrinkles)      = std::fmax(of(figures, Concern::wrinkles), o.shape.detail_ratio);
         of(figures, Concern::without_jumps) = std::fmax(of(figures, Concern::without_jumps), o.interface.without_jumps);
         of(figures, Concern::folds)         = std::fmax(of(figures, Concern::folds), o.interface.folded);
+        of(figures, Concern::self_gap)      = std::fmin(of(figures, Concern::self_gap), o.self_gap);
         left_over += std::abs(o.energy_residual);
       }
     of(figures, Concern::gap) = scene_.gap(state).gap;
     if (!scene_.description().liquids.unbounded) // there the faces are no walls
       of(figures, Concern::wall) = scene_.distance_from_faces(state);
-    if (step.step > 0.)
-      memory_.energy.add_step(step.step, left_over, step.dissipation);
+    memory_.energy.add_step(step.step, left_over, step.dissipation);
     of(figures, Concern::energy) = memory_.energy.defect();
+    memory_.steps.add_step(step.step, step.local_error);
+    of(figures, Concern::steps) = memory_.steps.sum;
+    of(figures, Concern::rise)  = std::max(step.energy_rise, 0.); // or not a number
     for (const std::string &text : update_warnings(memory_, step.time, figures, context_))
       log_.line(text);
   }

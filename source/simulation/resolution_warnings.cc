@@ -23,6 +23,10 @@ namespace tanktread
     constexpr double largest_energy_defect =
       0.01; // right: up to 0.0024 at any time; explicit steps at a half and a quarter of their stable length: 0.05; unstable ones: 0.75 to 1
 
+    constexpr double largest_step_error = 0.09, largest_step_error_at_rest = 0.02; // in a
+    constexpr double largest_energy_rise = 1e-6;
+    constexpr double least_self_gap      = 0.75; // in finest cells
+
     constexpr unsigned int n_steps_of_start = 4, least_n_steps = 10;
 
     struct Entry
@@ -39,7 +43,10 @@ namespace tanktread
                                                         {Concern::folds, "worst_area_folded", false},
                                                         {Concern::gap, "worst_gap", true},
                                                         {Concern::wall, "worst_wall_gap", true},
-                                                        {Concern::energy, "worst_energy_defect", false}}};
+                                                        {Concern::energy, "worst_energy_defect", false},
+                                                        {Concern::steps, "worst_step_error", false},
+                                                        {Concern::rise, "worst_energy_rise", false},
+                                                        {Concern::self_gap, "worst_self_gap", true}}};
 
     bool
     is_worse(const Entry &entry, const double value, const double than)
@@ -128,11 +135,44 @@ namespace tanktread
     }
 
     std::string
+    self_gap_text(const double gap, const ResolutionContext &context)
+    {
+      return "two sheets of a shell are " + number(gap) + " a apart, less than " + number(least_self_gap) + " finest cells of the fluid (" + cells(context) +
+        "): the film of liquid between them is not resolved. " + finer_cells(gap / least_self_gap) + ".";
+    }
+
+    std::string
     energy_text(const double defect, const ResolutionContext &context)
     {
       return "the steps have left over " + percent(defect) + " of the dissipation in the balance of energy, more than " + percent(largest_energy_defect) +
         ". Take " +
         (context.is_explicit ? "Solver/Coupling = implicit, or a shorter Time/Step." : "a smaller Time/Tolerance or Time/Step, or Time/Scheme = BDF3.");
+    }
+
+    /** Other steps than those of Time/Step, or none if the file has left them to a tolerance. */
+    std::string
+    shorter_steps(const double times, const ResolutionContext &context)
+    {
+      if (!context.steps_are_fixed)
+        return "a smaller Time/Tolerance";
+      return "Time/Tolerance > 0, Time/Step = " + number(times * context.step) + " or less";
+    }
+
+    std::string
+    steps_text(const double error, const ResolutionContext &context)
+    {
+      return "the local errors of the steps of the last unit of time add up to " + number(error) + " a (root mean square over the control points), more than " +
+        number(warning_threshold(Concern::steps, context)) + " a: the steps are too long for what the shells do. Take " +
+        shorter_steps(std::pow(warning_threshold(Concern::steps, context) / error, 1. / context.order), context) +
+        (context.order == 1 ? ", or Time/Scheme = BDF2, of second order." : ".");
+    }
+
+    std::string
+    rise_text(const double rise, const ResolutionContext &context)
+    {
+      return "the energy of the shells has risen in a step by " + number(rise) + " of what it was at the start, more than " + number(largest_energy_rise) +
+        ", though in a liquid at rest it can only fall: the step is too long for so stiff a shell. Take " + shorter_steps(0.5, context) +
+        (context.order > 1 ? ", or Time/Scheme = backward Euler." : ", or a smaller Solver/Newton tolerance.");
     }
 
     std::string
@@ -154,6 +194,12 @@ namespace tanktread
             return gap_text("two shells", value, context);
           case Concern::wall:
             return gap_text("a shell and a wall", value, context);
+          case Concern::self_gap:
+            return self_gap_text(value, context);
+          case Concern::steps:
+            return steps_text(value, context);
+          case Concern::rise:
+            return rise_text(value, context);
           default:
             return energy_text(value, context);
         }
@@ -164,11 +210,15 @@ namespace tanktread
   void
   EnergyMemory::add_step(const double length, const double of_step, const double dissipation)
   {
-    if (++n_steps > n_steps_of_start)
+    const double of_liquid = 0.5 * length * (std::abs(last_dissipation) + std::abs(dissipation));
+    n_steps += length > 0.;
+    if (n_steps > n_steps_of_start)
       {
         left_over += of_step;
-        dissipated += 0.5 * length * (std::abs(last_dissipation) + std::abs(dissipation));
+        dissipated += of_liquid;
       }
+    else
+      dissipated += std::max(0., of_liquid - of_step);
     last_dissipation = dissipation;
   }
 
@@ -177,6 +227,15 @@ namespace tanktread
   EnergyMemory::defect() const
   {
     return n_steps < n_steps_of_start + least_n_steps || !(dissipated > 0.) ? std::numeric_limits<double>::quiet_NaN() : left_over / dissipated;
+  }
+
+
+  void
+  StepErrorMemory::add_step(const double length, const double error)
+  {
+    sum *= std::exp(-length);
+    if (!std::isnan(error))
+      sum = std::isnan(sum) ? error : sum + error;
   }
 
 
@@ -198,6 +257,12 @@ namespace tanktread
         case Concern::gap:
         case Concern::wall:
           return least_gap * context.finest_cell;
+        case Concern::self_gap:
+          return least_self_gap * context.finest_cell;
+        case Concern::steps:
+          return context.at_rest ? largest_step_error_at_rest : largest_step_error;
+        case Concern::rise:
+          return largest_energy_rise;
         default:
           return largest_energy_defect;
       }

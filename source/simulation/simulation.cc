@@ -279,6 +279,8 @@ namespace tanktread
     o.time              = memory_.time;
     o.step              = step.length;
     o.dissipation       = scene_.level().dissipation(state_);
+    o.local_error       = step.local_error;
+    o.energy_rise       = step.energy_rise;
     o.newton_iterations = step.newton_iterations;
     o.linear_iterations = step.linear_iterations;
     o.n_cells           = scene_.fluid().mesh().triangulation().n_global_active_cells();

@@ -15,6 +15,25 @@
 
 namespace tanktread
 {
+  namespace
+  {
+    constexpr double allowed_energy_rise = 1e-6; // in a step with Time/Tolerance > 0, in a liquid at rest
+
+    double
+    root_mean_square_distance(const ShellFields &x, const ShellFields &y)
+    {
+      double       sum = 0.;
+      Eigen::Index n   = 0;
+      for (std::size_t c = 0; c < x.size(); ++c)
+        {
+          sum += (x[c] - y[c]).squaredNorm();
+          n += x[c].rows();
+        }
+      return std::sqrt(sum / n);
+    }
+  } // namespace
+
+
   TimeStepper::TimeStepper(const TimeParameters &parameters, const TimeCoupling coupling, const double end_time, Scene &scene, StepMemory &memory, Log &log)
     : parameters_(parameters)
     , coupling_(coupling)
@@ -29,6 +48,7 @@ namespace tanktread
   TimeStepper::start(const double time, const ShellFields &x)
   {
     memory_.history.add(time, x);
+    memory_.energy.start(scene_, x);
   }
 
 
@@ -60,7 +80,14 @@ namespace tanktread
   StepResult
   TimeStepper::step(State &state, const double time, const bool mesh_is_new)
   {
-    return coupling_ == TimeCoupling::explicit_euler ? explicit_step(state, time) : implicit_step(state, time, mesh_is_new);
+    StepResult result = coupling_ == TimeCoupling::explicit_euler ? explicit_step(state, time) : implicit_step(state, time, mesh_is_new);
+    if (result.beyond_mesh.empty())
+      {
+        const ShellFields x = positions(state);
+        result.energy_rise  = memory_.energy.rise(scene_, x);
+        memory_.energy.add(scene_, x);
+      }
+    return result;
   }
 
 
@@ -115,10 +142,9 @@ namespace tanktread
 
 
   NewtonReport
-  TimeStepper::solve_stages(const State &state, const double time, const double length, Levels levels, State &next)
+  TimeStepper::solve_stages(const StepHistory &history, const State &state, const double time, const double length, Levels levels, State &next)
   {
-    const StepHistory       &history = memory_.history;
-    const unsigned int       n       = history.n_stages();
+    const unsigned int       n = history.n_stages();
     std::deque<State>        stages; // does not move what it holds, which `levels` points to
     std::vector<ShellFields> displacements;
     NewtonReport             report;
@@ -151,7 +177,7 @@ namespace tanktread
     if (from_extrapolation)
       for (const StepMemory::Level &level : memory_.previous)
         levels.emplace_back(level.time, &level.state);
-    const NewtonReport report = solve_stages(state, time, length, std::move(levels), next);
+    const NewtonReport report = solve_stages(memory_.history, state, time, length, std::move(levels), next);
     if (!report.converged)
       {
         std::ostringstream text;
@@ -162,6 +188,42 @@ namespace tanktread
         log_.line(text.str() + ").");
       }
     return report;
+  }
+
+
+  std::optional<ShellFields>
+  TimeStepper::first_step_by_second_order(const State &state, const double time, const double length, StepResult &result)
+  {
+    if (parameters_.tolerance > 0. || order(parameters_.scheme) > 1 || !memory_.history.is_at_start())
+      return {};
+    TimeParameters second = parameters_;
+    second.scheme         = TimeScheme::sdirk2;
+    StepHistory history(second);
+    history.add(time, positions(state));
+    State              end;
+    const NewtonReport report = solve_stages(history, state, time, length, {{time, &state}}, end);
+    result.newton_iterations += report.newton_iterations;
+    result.linear_iterations += report.linear_iterations;
+    if (!report.converged || scene_.coupling().jumps().n_coarse_cut_cells() > 0)
+      return {};
+    return positions(end);
+  }
+
+
+  std::string
+  TimeStepper::refusal(const State &next, const double length)
+  {
+    std::string  result = scene_.refusal(next);
+    const double rise   = parameters_.tolerance > 0. ? memory_.energy.rise(scene_, positions(next)) : 0.;
+    if (result.empty() && rise > allowed_energy_rise)
+      {
+        std::ostringstream text;
+        text << "the energy of the shells would rise by " << rise << " of what it was, in a liquid at rest";
+        result = text.str();
+      }
+    if (!result.empty())
+      log_.line("Step of length " + std::to_string(length) + " rejected: " + result + '.');
+    return result;
   }
 
 
@@ -177,12 +239,7 @@ namespace tanktread
         result.newton_iterations += report.newton_iterations;
         result.linear_iterations += report.linear_iterations;
         if (report.converged)
-          {
-            failure = scene_.refusal(next);
-            if (!failure.empty())
-              log_.line("Step of length " + std::to_string(result.length) + " rejected: " + failure + '.');
-            return failure;
-          }
+          return refusal(next, result.length);
         failure = report.message;
       }
     return failure;
@@ -190,10 +247,13 @@ namespace tanktread
 
 
   bool
-  TimeStepper::accept_step(State &state, const double time, const double length, const double shortest, State &next)
+  TimeStepper::accept_step(State &state, const double time, const double shortest, const ShellFields &reference, State &next, StepResult &result)
   {
+    const double      length  = result.length;
+    const ShellFields x       = positions(next);
+    const double      measure = reference.empty() ? memory_.history.local_error(length, x) : root_mean_square_distance(x, reference);
     // One answer for all ranks: logarithms and powers may differ in the last digit between kinds of processors.
-    const double error  = dealii::Utilities::MPI::broadcast(scene_.elasticity().communicator(), memory_.history.local_error(length, positions(next)), 0);
+    const double error  = dealii::Utilities::MPI::broadcast(scene_.elasticity().communicator(), measure, 0);
     const double factor = dealii::Utilities::MPI::broadcast(scene_.elasticity().communicator(), memory_.history.length_factor(error), 0);
     memory_.next_length = std::min(parameters_.step, factor * length);
     if (parameters_.tolerance > 0. && error > 2. * parameters_.tolerance)
@@ -207,11 +267,13 @@ namespace tanktread
           return false;
         memory_.next_length = shortest;
       }
+    if (error > 0.)
+      result.local_error = error;
     memory_.previous.push_front({time, std::move(state)});
     if (memory_.previous.size() > 2)
       memory_.previous.pop_back();
     state = std::move(next);
-    memory_.history.add(time + length, positions(state));
+    memory_.history.add(time + length, x);
     return true;
   }
 
@@ -224,6 +286,7 @@ namespace tanktread
     const double wanted = std::min(memory_.next_length, end_time_ - time), shortest = std::min(wanted, 1e-3 * parameters_.step);
     bool         first_attempt = true;
     std::string  failure;
+    const auto   reference = first_step_by_second_order(state, time, wanted, result);
     for (result.length = wanted; result.length >= shortest;)
       {
         failure       = attempts(state, time, first_attempt, result, next);
@@ -240,7 +303,7 @@ namespace tanktread
           }
         if (!failure.empty())
           result.length *= 0.5;
-        else if (accept_step(state, time, result.length, shortest, next))
+        else if (accept_step(state, time, shortest, reference && result.length == wanted ? *reference : ShellFields(), next, result))
           return result;
         else
           result.length = memory_.next_length;

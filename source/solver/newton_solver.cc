@@ -14,6 +14,8 @@ namespace tanktread
 {
   namespace
   {
+    constexpr unsigned int max_refinements = 4; // of a solution within the tolerance
+
     /** tau = 0. */
     Linearisation
     frozen_shells(const double h)
@@ -44,11 +46,11 @@ namespace tanktread
     Eigen::Index n = 0;
     for (const Residual::OfCapsule &capsule : r.capsules)
       {
-        sum += capsule.x.squaredNorm();
+        sum += capsule.velocity.squaredNorm() + capsule.x.squaredNorm() / (tau * tau);
         n += capsule.x.rows();
         of_volumes += std::pow(capsule.flux, 2) + std::pow(capsule.volume / tau, 2);
       }
-    return std::sqrt(r.shell_speed * r.shell_speed + sum / (n * tau * tau) + of_volumes / std::pow(3. * volume_, 2));
+    return std::sqrt(sum / n + of_volumes / std::pow(3. * volume_, 2));
   }
 
 
@@ -74,6 +76,29 @@ namespace tanktread
     for (const Residual::OfCapsule &capsule : r.capsules)
       volumes = volumes && std::abs(capsule.volume) <= parameters_.volume_tolerance * volume_;
     return norm <= parameters_.newton_tolerance && volumes;
+  }
+
+
+  bool
+  NewtonSolver::is_balanced(const State &state, const Residual &r, const TimeStep &step) const
+  {
+    if (!level_.flow().is_zero() || level_.has_inertia())
+      return true;
+    constexpr double part       = 0.1; // of what the step dissipates
+    double           left_over  = 0.;
+    double           dissipated = 3. * volume_ * level_.liquids().mean_viscosity() * std::pow(parameters_.newton_tolerance, 2) * step.tau;
+    const auto      &shells     = level_.shells(state);
+    for (std::size_t c = 0; c < shells.size(); ++c)
+      {
+        const CapsuleState        &capsule = state.capsules[c];
+        const Residual::OfCapsule &missing = r.capsules[c];
+        const ControlPoints        way     = capsule.x - step.xhat[c];
+        const ControlPoints        load    = capsule.force + capsule.pressure_jump * shells[c]->volume_gradient();
+        left_over += std::abs(missing.force.cwiseProduct(way).sum()) + std::abs(load.cwiseProduct(missing.x + step.tau * missing.velocity).sum()) +
+          std::abs(capsule.pressure_jump * missing.volume);
+        dissipated += std::abs(load.cwiseProduct(way).sum());
+      }
+    return dealii::Utilities::MPI::broadcast(layout_.communicator(), left_over / dissipated, 0) <= part;
   }
 
 
@@ -237,6 +262,8 @@ namespace tanktread
     progress.length = dealii::Utilities::MPI::broadcast(layout_.communicator(), step.tau * speed(r, step.tau), 0);
     while (!progress.solved)
       {
+        if (report.newton_iterations == parameters_.max_newton_iterations && progress.tolerable)
+          return;
         if (report.newton_iterations == parameters_.max_newton_iterations)
           throw NumericalError("no convergence in " + std::to_string(report.newton_iterations) + " Newton iterations");
         if (trial_points() == Points::follow && !report.step_lengths.empty() && report.step_lengths.back() < 1.)
@@ -245,6 +272,11 @@ namespace tanktread
           use(Tangent::exact);
         const unsigned int renewals = implicit_shells_.n_renewals();
         const std::string  failure  = iterate(trial, r, step, progress, report);
+        if (!failure.empty() && progress.tolerable)
+          {
+            level_.move_points(trial); // which a rejected trial may have taken along
+            return;
+          }
         if (!failure.empty())
           react(failure, implicit_shells_.n_renewals() > renewals, progress);
         if (!progress.followed && follow_shells(trial, progress))
@@ -256,8 +288,9 @@ namespace tanktread
         if (progress.followed)
           progress.settled = progress.settled || report.residuals.back() <= 10. * parameters_.newton_tolerance ||
             2 * report.newton_iterations >= parameters_.max_newton_iterations;
-        progress.solved = is_solved(r, report.residuals.back());
-        progress.length = step.tau * report.residuals.back();
+        progress.tolerable = is_solved(r, report.residuals.back());
+        progress.solved    = progress.tolerable && (is_balanced(trial, r, step) || progress.n_refinements++ == max_refinements);
+        progress.length    = step.tau * report.residuals.back();
       }
   }
 

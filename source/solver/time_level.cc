@@ -183,12 +183,13 @@ namespace tanktread
     for (const CapsuleState &capsule : state.capsules)
       pressure_jumps.push_back(capsule.pressure_jump);
     coupling_.spread(-1., extended, pressure_jumps, r.fluid);
-    r.shell_speed = shell_speed(r.fluid);
+    const ShellFields of_missing_loads = shell_velocity_of(r.fluid);
     for (std::size_t c = 0; c < shells.size(); ++c)
       {
-        r.capsules[c].volume = shells[c]->volume() - shells[c]->capsule().volume();
-        r.capsules[c].flux   = shells[c]->volume_gradient().cwiseProduct(velocities[c]).sum();
-        r.capsules[c].x      = state.capsules[c].x - step.xhat[c] - tau * velocities[c] - state.capsules[c].volume_shift * shells[c]->normal_field();
+        r.capsules[c].velocity = of_missing_loads[c];
+        r.capsules[c].volume   = shells[c]->volume() - shells[c]->capsule().volume();
+        r.capsules[c].flux     = shells[c]->volume_gradient().cwiseProduct(velocities[c]).sum();
+        r.capsules[c].x        = state.capsules[c].x - step.xhat[c] - tau * velocities[c] - state.capsules[c].volume_shift * shells[c]->normal_field();
       }
     return r;
   }
@@ -238,20 +239,13 @@ namespace tanktread
   }
 
 
-  double
-  TimeLevel::shell_speed(const FluidBlockVector &load) const
+  ShellFields
+  TimeLevel::shell_velocity_of(const FluidBlockVector &load) const
   {
     FluidBlockVector flow;
     fluid_->space().reinit(flow);
     fluid_->preconditioner().vmult(flow, load);
-    double       sum = 0.;
-    Eigen::Index n   = 0;
-    for (const ControlPoints &velocity : coupling_.interpolate(flow))
-      {
-        sum += velocity.squaredNorm();
-        n += velocity.rows();
-      }
-    return std::sqrt(sum / n);
+    return coupling_.interpolate(flow);
   }
 
 

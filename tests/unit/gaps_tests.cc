@@ -186,3 +186,27 @@ TEST(Gaps, DistanceFromFaces)
   EXPECT_NEAR(smallest_distance_from_faces(spheres.at({{0., 0., -1.4}}), {{infinity, infinity, 2.}}), -0.4, resolution);
   EXPECT_EQ(smallest_distance_from_faces(spheres.at({{50., 0., 0.}}), unbounded), infinity);
 }
+
+
+TEST(Gaps, OfTheSheetsOfOneShell)
+{
+  const Capsules            spheres(Shape::sphere), disks(Shape::biconcave);
+  const ShellConfigurations sphere = spheres.at({direction()}), disk = disks.at({direction()});
+  EXPECT_EQ(smallest_self_gap(*sphere[0], 0.5), infinity);
+
+  // A disk is thinnest in the middle, 4 points of the coupling across: what its points there are apart.
+  const ControlPoints points = disk[0]->points().rowwise() - direction();
+  double              upper  = infinity;
+  for (Eigen::Index q = 0; q < points.rows(); ++q)
+    if (points.row(q).head<2>().norm() < 0.1)
+      upper = std::min(upper, std::abs(points(q, 2)));
+  std::cout << "thickness of the disk " << 2. * upper << ", self gap " << smallest_self_gap(*disk[0], 1.) << std::endl;
+  EXPECT_NEAR(smallest_self_gap(*disk[0], 1.), 2. * upper, 0.02);
+  EXPECT_EQ(smallest_self_gap(*disk[0], 1.9 * upper), infinity);
+
+  // The same disk half as thick.
+  ControlPoints x = disks.capsule.initial();
+  x.col(2) *= 0.5;
+  const ShellConfigurations flat = shell_configurations(disks.capsule, {x});
+  EXPECT_NEAR(smallest_self_gap(*flat[0], 1.), upper, 0.02);
+}

@@ -15,8 +15,17 @@ namespace
 
   const ResolutionContext context = {0.2, 1., 162, false, false, false};
 
-  constexpr std::array<Concern, n_concerns> all_concerns = {
-    {Concern::triangle, Concern::curvature, Concern::wrinkles, Concern::without_jumps, Concern::folds, Concern::gap, Concern::wall, Concern::energy}};
+  constexpr std::array<Concern, n_concerns> all_concerns = {{Concern::triangle,
+                                                             Concern::curvature,
+                                                             Concern::wrinkles,
+                                                             Concern::without_jumps,
+                                                             Concern::folds,
+                                                             Concern::gap,
+                                                             Concern::wall,
+                                                             Concern::energy,
+                                                             Concern::steps,
+                                                             Concern::rise,
+                                                             Concern::self_gap}};
 
   ConcernFigures
   only(const Concern concern, const double value)
@@ -30,7 +39,7 @@ namespace
   bool
   low_is_bad(const Concern concern)
   {
-    return concern == Concern::triangle || concern == Concern::curvature || concern == Concern::gap || concern == Concern::wall;
+    return concern == Concern::triangle || concern == Concern::curvature || concern == Concern::gap || concern == Concern::wall || concern == Concern::self_gap;
   }
 
   /** A value that is so many times as bad as the threshold. */
@@ -138,4 +147,32 @@ TEST(EnergyMemory, LeftOverByTheWorkAfterTheStart)
   EXPECT_NEAR(memory.defect(), 0.02 / (9 * 0.2 + 0.6), 1e-15);
   memory.add_step(0.2, unknown, 4.); // forces without an energy
   EXPECT_TRUE(std::isnan(memory.defect()));
+}
+
+
+TEST(EnergyMemory, ShapesThatHaveComeToRestAreMeasuredByTheirWayThere)
+{
+  EnergyMemory memory;
+  memory.add_step(0., 0., 30.);
+  memory.add_step(0.1, 0.5, 10.); // 2 by the trapezoidal rule, 1.5 by the energy
+  for (unsigned int i = 0; i < 13; ++i)
+    memory.add_step(0.1, 1e-4, 0.);
+  EXPECT_NEAR(memory.defect(), 10 * 1e-4 / (1.5 + 0.5 - 1e-4), 1e-9);
+}
+
+
+TEST(StepErrorMemory, WhatIsOlderThanAUnitOfTimeFades)
+{
+  StepErrorMemory memory;
+  memory.add_step(0.5, unknown);
+  EXPECT_TRUE(std::isnan(memory.sum));
+  memory.add_step(0.5, 0.01);
+  memory.add_step(0.5, 0.02);
+  EXPECT_NEAR(memory.sum, 0.01 * std::exp(-0.5) + 0.02, 1e-15);
+  memory.add_step(2., unknown);
+  EXPECT_NEAR(memory.sum, 0.01 * std::exp(-2.5) + 0.02 * std::exp(-2.), 1e-15);
+  // In a motion that does not change as many as there are in a unit of time, about.
+  for (unsigned int i = 0; i < 1000; ++i)
+    memory.add_step(0.01, 1e-5);
+  EXPECT_NEAR(memory.sum, 1e-3, 1e-5);
 }

@@ -28,6 +28,13 @@ namespace tanktread
   ShellGap
   smallest_gap(const ShellConfigurations &shells, const std::array<double, 3> &periods, double reach);
 
+  /**
+   * Smallest distance of parts of one shell that face opposite ways (normals at more than 154 degrees): two sheets with liquid between them, outside as where a dimple closes on itself, or inside as where a disk is
+   * thin. Within `reach`, infinite beyond. A smooth rim of radius R is one of 2 R.
+   */
+  double
+  smallest_self_gap(const ShellConfiguration &shell, double reach);
+
   /** Smallest distance of the shells' points from planes x_d = +-half_sides[d]; infinite half sides are no planes. Negative beyond them. */
   double
   smallest_distance_from_faces(const ShellConfigurations &shells, const std::array<double, 3> &half_sides);

@@ -24,9 +24,10 @@ namespace tanktread
   /** What is the same for all capsules of a step. */
   struct StepObservables
   {
-    double       time              = 0.;
-    double       step              = 0.;
-    double       dissipation       = 0.; // in the box, beyond that of the undisturbed flow
+    double       time        = 0.;
+    double       step        = 0.;
+    double       dissipation = 0.;                                                                  // in the box, beyond that of the undisturbed flow
+    double       local_error = std::numeric_limits<double>::quiet_NaN(), energy_rise = local_error; // see StepResult
     unsigned int newton_iterations = 0, linear_iterations = 0;
     double       n_cells   = 0.;
     double       wall_time = 0.;
@@ -47,7 +48,8 @@ namespace tanktread
     Rheology         rheology{};
     double           energy_residual = std::numeric_limits<double>::quiet_NaN(); // of the last step, see energy_residual()
     ShapeQuality     shape;
-    InterfaceQuality interface; // zero with the plain interface
+    InterfaceQuality interface;                                          // zero with the plain interface
+    double           self_gap = std::numeric_limits<double>::infinity(); // see smallest_self_gap()
   };
 
   /** All capsules together: a row of suspension.csv. In unbounded liquid there are no means over its volume: they are not numbers. */

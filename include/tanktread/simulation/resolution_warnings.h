@@ -22,10 +22,13 @@ namespace tanktread
     folds,         // InterfaceQuality::folded
     gap,           // between capsules, in a
     wall,          // gap between a capsule and a face with prescribed velocity, in a
-    energy         // what the steps have left over, relative to the dissipation; see EnergyMemory
+    energy,        // what the steps have left over, relative to the dissipation; see EnergyMemory
+    steps,         // what their local errors add up to, in a; see StepErrorMemory
+    rise,          // of the energy in a step, in a liquid at rest; see RestEnergy
+    self_gap       // between two sheets of one capsule, in a; see smallest_self_gap()
   };
 
-  constexpr unsigned int n_concerns = 8;
+  constexpr unsigned int n_concerns = 11;
 
   /** One number for each Concern: of a step the worst of all capsules, not a number where it is not known. */
   using ConcernFigures = std::array<double, n_concerns>;
@@ -39,6 +42,10 @@ namespace tanktread
     bool         bends            = true;  // whether the shell resists bending
     bool         moments_alone    = false; // Capsule/Bending form = moment-only
     bool         is_explicit      = false; // Solver/Coupling
+    unsigned int order            = 3;     // of Time/Scheme
+    double       step             = 0.;    // Time/Step
+    bool         steps_are_fixed  = true;  // Time/Tolerance = 0
+    bool         at_rest          = false; // the undisturbed liquid
   };
 
   /** The worst value of a figure in a run so far, and since when it has been beyond its threshold. */
@@ -48,15 +55,15 @@ namespace tanktread
   };
 
   /**
-   * What the steps leave over, |r_E| summed over capsules and steps, and the integral of the dissipation. The first four steps are not counted: from rest they pass a transient that need not be resolved, and
-   * the integral of (33b) has fewer than four levels.
+   * What the steps leave over, |r_E| summed over capsules and steps, and the integral of the dissipation by the trapezoidal rule. What the first four steps leave over is not counted: from rest they pass a transient that
+   * need not be resolved, and the integral of (33b) has fewer than four levels. It is taken off what they dissipate instead, which is counted, so that a shape that has come to rest is not measured by nothing.
    */
   struct EnergyMemory
   {
     double       left_over = 0., dissipated = 0., last_dissipation = 0.;
     unsigned int n_steps = 0;
 
-    /** @param left_over sum of |r_E| over the capsules. @param dissipation at the end of the step. */
+    /** @param left_over sum of |r_E| over the capsules. @param dissipation at the end of the step. A length of zero: the start. */
     void
     add_step(double length, double left_over, double dissipation);
 
@@ -65,14 +72,25 @@ namespace tanktread
     defect() const;
   };
 
+  /** Local errors of the steps of about the last unit of time, sum of e_n exp(-(t - t_n)): what is older has faded as the shape relaxes. Steps whose error is not known add nothing. */
+  struct StepErrorMemory
+  {
+    double sum = std::numeric_limits<double>::quiet_NaN(); // in a; not a number before one is known
+
+    /** @param error local error in a, or not a number. */
+    void
+    add_step(double length, double error);
+  };
+
   /** Part of what a checkpoint has to write. */
   struct WarningMemory
   {
     std::array<ConcernMemory, n_concerns> concerns;
     EnergyMemory                          energy;
+    StepErrorMemory                       steps;
   };
 
-  /** The value beyond which there is a warning; below it for triangle, curvature, gap and wall, above it for the others. */
+  /** The value beyond which there is a warning; below it for triangle, curvature and gaps, above it for the others. */
   double
   warning_threshold(Concern concern, const ResolutionContext &context);
 

@@ -7,6 +7,7 @@
 #include <tanktread/simulation/motion.h>
 #include <tanktread/simulation/phase_angles.h>
 #include <tanktread/simulation/resolution_warnings.h>
+#include <tanktread/simulation/rest_energy.h>
 #include <tanktread/simulation/step_history.h>
 #include <tanktread/solver/state.h>
 #include <tanktread/surface/surface_geometry.h>
@@ -32,6 +33,7 @@ namespace tanktread
     };
 
     StepHistory       history;
+    RestEnergy        energy;
     double            next_length;
     std::deque<Level> previous; // levels before the present one, newest first, two at most; their flows are on the present mesh
   };

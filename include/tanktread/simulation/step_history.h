@@ -38,6 +38,13 @@ namespace tanktread
     void
     add(double time, const ShellFields &x);
 
+    /** Whether there is but one level. */
+    bool
+    is_at_start() const
+    {
+      return levels_.size() == 1;
+    }
+
     /** Solutions that the next step takes: one for a multistep scheme with enough levels behind it, otherwise those of SDIRK of the same order. */
     unsigned int
     n_stages() const;

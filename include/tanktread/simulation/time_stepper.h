@@ -9,6 +9,8 @@
 #include <tanktread/solver/scene.h>
 
 #include <deque>
+#include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +23,8 @@ namespace tanktread
     double       length            = 0.;
     unsigned int newton_iterations = 0;
     unsigned int linear_iterations = 0;
+    double       local_error       = std::numeric_limits<double>::quiet_NaN(); // of the step, in a, see StepHistory; not a number where it is not known
+    double       energy_rise       = std::numeric_limits<double>::quiet_NaN(); // of the shells, over RestEnergy::scale; not a number with flow or inertia
     ShellFields
       beyond_mesh; // not empty: no step was made, since shells that end here cut cells that are not finest ones; to be tried again on a mesh around them too
   };
@@ -29,8 +33,10 @@ namespace tanktread
    * Moves a State from one time level to the next. An implicit step that Newton's method does not solve is tried again from the last level instead of the
    * extrapolated
    * guess, then with half its length; one whose shells overlap at its end, with half its length; one whose local error exceeds Time/Tolerance is repeated with
-   * a shorter length; lengths grow back by at most 1.5. Failed attempts are
-   * said in the log. All calls are collective.
+   * a shorter length, and so is one in which the energy of the shells rises in a liquid at rest; lengths grow back by at most 1.5. Failed attempts are
+   * said in the log.
+   *
+   * With Time/Tolerance = 0 errors and rises are measured only. The first step of backward Euler, which has no levels behind it to measure its error by, is compared with one of SDIRK2. All calls are collective.
    */
   class TimeStepper
   {
@@ -75,9 +81,15 @@ namespace tanktread
     /** One attempt at a step: sets `next` to the new level, or says in the log why not. With a stage beyond the finest cells, `next` is that stage. */
     NewtonReport
     try_step(const State &state, double time, double length, bool from_extrapolation, State &next);
-    /** Solves the stages of a step, from guesses made of the stages before and of `levels`. The last one solved, or not solved, is in `next`. */
+    /** Solves the stages of a step as `history` has them, from guesses made of the stages before and of `levels`. The last one solved, or not solved, is in `next`. */
     NewtonReport
-    solve_stages(const State &state, double time, double length, Levels levels, State &next);
+    solve_stages(const StepHistory &history, const State &state, double time, double length, Levels levels, State &next);
+    /** Positions by SDIRK2 at the end of the first step of backward Euler, what they took in `result`; none in other steps, with Time/Tolerance > 0, or if they cannot be computed. */
+    std::optional<ShellFields>
+    first_step_by_second_order(const State &state, double time, double length, StepResult &result);
+    /** Why the step to `next` must not be accepted, or nothing; said in the log. */
+    std::string
+    refusal(const State &next, double length);
     /** Explicit part of the velocity of a stage in a liquid with inertia; otherwise empty. */
     FluidVector
     uhat(const StageWeights &weights, const State &state, const std::deque<State> &stages) const;
@@ -87,9 +99,9 @@ namespace tanktread
     /** Attempts from the extrapolated state and from the last one. Returns why they failed, or nothing. */
     std::string
     attempts(const State &state, double time, bool first_attempt, StepResult &result, State &next);
-    /** Makes `next` the present state, if its local error allows it, and sets the length of the step to come. */
+    /** Makes `next` the present state, if its local error allows it, and sets the length of the step to come. @param reference see first_step_by_second_order(), or empty. */
     bool
-    accept_step(State &state, double time, double length, double shortest, State &next);
+    accept_step(State &state, double time, double shortest, const ShellFields &reference, State &next, StepResult &result);
     StepResult
     explicit_step(State &state, double time);
     void

@@ -87,12 +87,14 @@ namespace tanktread
     /** How far a step has come, and what its next iteration is going to be like. */
     struct Progress
     {
-      double       length;           // about that of the next displacement
-      bool         cautious = false; // after a failure with the positive tangent
-      unsigned int n_moves  = 1;     // of the points or the viscosity
-      bool         settled  = false; // the viscous part of the jumps: what a further sweep would change is small, or too many of them have been done already
-      bool         followed = false; // points, viscosity and jumps are those of the state after the last iteration
-      bool         solved   = false;
+      double       length;            // about that of the next displacement
+      bool         cautious  = false; // after a failure with the positive tangent
+      unsigned int n_moves   = 1;     // of the points or the viscosity
+      bool         settled   = false; // the viscous part of the jumps: what a further sweep would change is small, or too many of them have been done already
+      bool         followed  = false; // points, viscosity and jumps are those of the state after the last iteration
+      bool         tolerable = false; // the tolerances are met
+      bool         solved    = false; // and the work of what is missing is small
+      unsigned int n_refinements = 0; // iterations after the tolerance had been met, until is_balanced()
     };
 
     /**
@@ -128,6 +130,16 @@ namespace tanktread
     norm(const Residual &r, double tau) const;
     bool
     is_solved(const Residual &r, double norm) const;
+    /**
+     * Whether what is missing in a solution does no work to speak of, in a liquid at rest: over a step Delta = x - xhat by w = J P^{-1} (r_u, r_p)
+     *
+     *     |r_F . Delta| + |(F + pi v) . (r_x + tau w)| + |pi r_V|  <=  (|(F + pi v) . Delta| + 3 V0 mu tolerance^2 tau) / 10,
+     *
+     * the right side a part of what the step dissipates, at least of what a flow of the speed of Newton's tolerance would. A stiff shell needs it: its energy feels displacements that the tolerance, a velocity, lets through.
+     * True in any other flow, whose work keeps the dissipation away from zero. Collective.
+     */
+    bool
+    is_balanced(const State &state, const Residual &r, const TimeStep &step) const;
     void
     use(Tangent tangent);
     /** Relative residual at which the linear solver may stop when the norm of the nonlinear residual is `norm`. */

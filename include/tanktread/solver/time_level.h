@@ -48,14 +48,14 @@ namespace tanktread
   {
     struct OfCapsule
     {
-      ControlPoints x;      // x - xhat - tau (J u + undisturbed flow) - sigma m
-      ControlPoints force;  // F - f(x)
-      double        flux;   // v . (J u + u_inf)
-      double        volume; // V - V0
+      ControlPoints velocity; // J P^{-1} (r_u, r_p), P the Stokes preconditioner: about how fast the missing forces would move the shell
+      ControlPoints x;        // x - xhat - tau (J u + undisturbed flow) - sigma m
+      ControlPoints force;    // F - f(x)
+      double        flux;     // v . (J u + u_inf)
+      double        volume;   // V - V0
     };
 
-    FluidBlockVector fluid; // A u - B^T p - sum R(F + pi v), -B u
-    double shell_speed;     // root mean square of J P^{-1} (r_u, r_p), P the Stokes preconditioner: about how fast the missing forces would move the shells
+    FluidBlockVector       fluid; // A u - B^T p - sum R(F + pi v), -B u
     std::vector<OfCapsule> capsules;
   };
 
@@ -131,9 +131,9 @@ namespace tanktread
       return unbounded_ ? unbounded_->faces().whole_space() : fluid_->space();
     }
 
-    /** See Residual::shell_speed. Collective. */
-    double
-    shell_speed(const FluidBlockVector &load) const;
+    /** Residual::OfCapsule::velocity of each shell. Collective. */
+    ShellFields
+    shell_velocity_of(const FluidBlockVector &load) const;
 
     /** Loads of the shells' forces, of unit pressure jumps and of the undisturbed flow: what residuals of the flow are small against. Collective. */
     FluidBlockVector

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Part of Tanktread: the energy of shells in a liquid at rest, which can only fall.
+
+#include <deal.II/base/mpi.h>
+
+#include <tanktread/simulation/rest_energy.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tanktread
+{
+  namespace
+  {
+    bool
+    is_known(const SceneDescription &scene)
+    {
+      // The moments alone are not the derivative of an energy.
+      const bool has_energy = scene.shell.form == BendingForm::variational || scene.moduli.bending_modulus == 0.;
+      return scene.liquids.flow.amplitude.is_zero() && scene.liquids.reynolds_number == 0. && has_energy;
+    }
+
+
+    double
+    energy(const Scene &scene, const ShellFields &x)
+    {
+      double result = 0.;
+      for (const ControlPoints &of_capsule : x)
+        {
+          const Shell::Energy parts = scene.elasticity().energy(of_capsule);
+          result += parts.membrane + parts.bending;
+        }
+      return dealii::Utilities::MPI::broadcast(scene.communicator(), result, 0);
+    }
+  } // namespace
+
+
+  void
+  RestEnergy::start(const Scene &scene, const ShellFields &x)
+  {
+    const ShellModuli &moduli = scene.description().moduli;
+    scale                     = moduli.bending_modulus > 0. ? moduli.bending_modulus : moduli.surface_young_modulus;
+    add(scene, x);
+    scale = std::max(scale, std::abs(last));
+  }
+
+
+  double
+  RestEnergy::rise(const Scene &scene, const ShellFields &x) const
+  {
+    return is_known(scene.description()) ? (energy(scene, x) - last) / scale : std::numeric_limits<double>::quiet_NaN();
+  }
+
+
+  void
+  RestEnergy::add(const Scene &scene, const ShellFields &x)
+  {
+    if (is_known(scene.description()))
+      last = energy(scene, x);
+  }
+} // namespace tanktread
