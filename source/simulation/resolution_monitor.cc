@@ -68,7 +68,7 @@ namespace tanktread
   {
     const Timings::Scope scope(scene_.timings(), "- resolution");
     ConcernFigures       figures   = unknown_figures();
-    double               left_over = 0.;
+    double               left_over = 0., power = std::abs(step.dissipation);
     for (const CapsuleObservables &o : capsules)
       {
         of(figures, Concern::triangle)      = std::fmin(of(figures, Concern::triangle), o.shape.worst_triangle);
@@ -78,11 +78,12 @@ namespace tanktread
         of(figures, Concern::folds)         = std::fmax(of(figures, Concern::folds), o.interface.folded);
         of(figures, Concern::self_gap)      = std::fmin(of(figures, Concern::self_gap), o.self_gap);
         left_over += std::abs(o.energy_residual);
+        power += std::abs(o.power);
       }
     of(figures, Concern::gap) = scene_.gap(state).gap;
     if (!scene_.description().liquids.unbounded) // there the faces are no walls
       of(figures, Concern::wall) = scene_.distance_from_faces(state);
-    memory_.energy.add_step(step.step, left_over, step.dissipation);
+    memory_.energy.add_step(step.step, left_over, power);
     of(figures, Concern::energy) = memory_.energy.defect();
     memory_.steps.add_step(step.step, step.local_error);
     of(figures, Concern::steps) = memory_.steps.sum;

@@ -144,9 +144,10 @@ namespace tanktread
     std::string
     energy_text(const double defect, const ResolutionContext &context)
     {
-      return "the steps have left over " + percent(defect) + " of the dissipation in the balance of energy, more than " + percent(largest_energy_defect) +
+      return "the steps have left over " + percent(defect) + " of the energy that has passed in its balance, more than " + percent(largest_energy_defect) +
         ". Take " +
-        (context.is_explicit ? "Solver/Coupling = implicit, or a shorter Time/Step." : "a smaller Time/Tolerance or Time/Step, or Time/Scheme = BDF3.");
+        (context.is_explicit ? "Solver/Coupling = implicit, or a shorter Time/Step."
+                             : "a smaller Time/Tolerance or Time/Step, Time/Scheme = BDF3, or for a stiff shell a smaller Solver/Newton tolerance.");
     }
 
     /** Other steps than those of Time/Step, or none if the file has left them to a tolerance. */
@@ -208,25 +209,25 @@ namespace tanktread
 
 
   void
-  EnergyMemory::add_step(const double length, const double of_step, const double dissipation)
+  EnergyMemory::add_step(const double length, const double of_step, const double power)
   {
-    const double of_liquid = 0.5 * length * (std::abs(last_dissipation) + std::abs(dissipation));
+    const double of_time = 0.5 * length * (last_power + power);
     n_steps += length > 0.;
     if (n_steps > n_steps_of_start)
       {
         left_over += of_step;
-        dissipated += of_liquid;
+        passed += of_time;
       }
     else
-      dissipated += std::max(0., of_liquid - of_step);
-    last_dissipation = dissipation;
+      passed += std::max(0., of_time - of_step);
+    last_power = power;
   }
 
 
   double
   EnergyMemory::defect() const
   {
-    return n_steps < n_steps_of_start + least_n_steps || !(dissipated > 0.) ? std::numeric_limits<double>::quiet_NaN() : left_over / dissipated;
+    return n_steps < n_steps_of_start + least_n_steps || !(passed > 0.) ? std::numeric_limits<double>::quiet_NaN() : left_over / passed;
   }
 
 

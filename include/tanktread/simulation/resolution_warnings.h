@@ -22,7 +22,7 @@ namespace tanktread
     folds,         // InterfaceQuality::folded
     gap,           // between capsules, in a
     wall,          // gap between a capsule and a face with prescribed velocity, in a
-    energy,        // what the steps have left over, relative to the dissipation; see EnergyMemory
+    energy,        // what the steps have left over in the balance; see EnergyMemory
     steps,         // what their local errors add up to, in a; see StepErrorMemory
     rise,          // of the energy in a step, in a liquid at rest; see RestEnergy
     self_gap       // between two sheets of one capsule, in a; see smallest_self_gap()
@@ -55,19 +55,20 @@ namespace tanktread
   };
 
   /**
-   * What the steps leave over, |r_E| summed over capsules and steps, and the integral of the dissipation by the trapezoidal rule. What the first four steps leave over is not counted: from rest they pass a transient that
-   * need not be resolved, and the integral of (33b) has fewer than four levels. It is taken off what they dissipate instead, which is counted, so that a shape that has come to rest is not measured by nothing.
+   * What the steps leave over, |r_E| summed over capsules and steps, over the energy that has passed: what the liquid has dissipated and what the shells have given to it or taken, by the trapezoidal rule. (In steady
+   * motion the shells' work vanishes, at the start from rest the dissipation: it grows with the third power of time, their energy with the second.) What the first four steps leave over is not counted: from rest they
+   * pass a transient that need not be resolved, and the integral of (33b) has fewer than four levels. It is taken off what passes in them instead, so that a shape that has come to rest is not measured by nothing.
    */
   struct EnergyMemory
   {
-    double       left_over = 0., dissipated = 0., last_dissipation = 0.;
+    double       left_over = 0., passed = 0., last_power = 0.;
     unsigned int n_steps = 0;
 
-    /** @param left_over sum of |r_E| over the capsules. @param dissipation at the end of the step. A length of zero: the start. */
+    /** @param left_over sum of |r_E| over the capsules. @param power dissipation and sum of |P| at the end of the step. A length of zero: the start. */
     void
-    add_step(double length, double left_over, double dissipation);
+    add_step(double length, double left_over, double power);
 
-    /** left_over / dissipated; not a number before ten steps have been counted, and for shells whose forces have no energy. */
+    /** left_over / passed; not a number before ten steps have been counted, and for shells whose forces have no energy. */
     double
     defect() const;
   };
