@@ -99,7 +99,7 @@ def figures(rows):
     if not stable or not done:
         return None
     truth, longest = done[-1]["D"], max(stable, key=lambda row: row["step"])
-    right = [row for row in done if abs(row["D"] / truth - 1) <= RIGHT]
+    right = [row for row in done[:-1] if abs(row["D"] / truth - 1) <= RIGHT] or done[-1:]
     cheapest = min(right, key=lambda row: row["cpu_seconds"])
     seconds = longest["cpu_a_step"] * END / longest["step"]
     return {"explicit_step": longest["step"], "implicit_step": max(row["step"] for row in done), "explicit_seconds": seconds, "cheapest": cheapest, "truth": done[-1]}
