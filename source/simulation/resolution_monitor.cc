@@ -56,7 +56,7 @@ namespace tanktread
     for (std::size_t c = 0; c < capsules.size(); ++c)
       {
         capsules[c].shape    = mesh_quality_(state.capsules[c].x);
-        capsules[c].self_gap = smallest_self_gap(*shells[c], 2. * context_.finest_cell);
+        capsules[c].self_gap = smallest_self_gap(*shells[c], context_.finest_cell);
         if (!jumps.are_none())
           capsules[c].interface = interface_quality(jumps.shells()[c], scene_.communicator());
       }
