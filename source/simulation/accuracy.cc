@@ -205,10 +205,9 @@ namespace tanktread
     bool
     stays_in_the_middle(const Parameters &parameters)
     {
-      const std::vector<double> &frame     = parameters.scene.frame_velocity;
-      const PlacementParameters &placement = parameters.placement;
-      return placement.placement == Placement::list && placement.centres.size() == 1 && placement.places()[0].centre.norm() < 1e-12 &&
-        frame == std::vector<double>(3, 0.);
+      const std::vector<double> &frame = parameters.scene.frame_velocity;
+      const PlacementParameters &list  = parameters.placement;
+      return list.placement == Placement::list && list.centres.size() == 1 && list.places()[0].centre.norm() < 1e-12 && frame == std::vector<double>(3, 0.);
     }
 
 
