@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: all parameters of a run, and reading them.
 
+#include <tanktread/base/enum_parameter.h>
 #include <tanktread/base/exceptions.h>
 #include <tanktread/base/output_folder.h>
 #include <tanktread/base/parameter_file.h>
@@ -67,6 +68,15 @@ namespace tanktread
         message << "Solver/Method is assembled; allowed with Scene/Viscosity ratio = " << scene.viscosity_ratio << ": matrix-free";
       if (!message.str().empty())
         throw InputError(message.str());
+    }
+
+    void
+    check_shell_mesh(const ShellMeshParameters &mesh, const ShellParameters &shell)
+    {
+      if (mesh.even == EvenControlMesh::always && !shell.place_is_free())
+        throw InputError(std::string("Shell mesh/Even control mesh is always; allowed where ") +
+                         (shell.reference == ReferenceCurvature::initial ? "Capsule/Reference curvature is initial" : "the shell has a membrane") +
+                         ", so that the place of the material matters: automatic or never.");
     }
 
     void
@@ -149,6 +159,14 @@ namespace tanktread
                       "Subdivisions of the icosahedron that give the control mesh: 10 * 4^level + 2 control points. Unused for a mesh file.",
                       dealii::Patterns::Integer(0, 6));
     prm.add_parameter("Quadrature", quadrature, "Quadrature points a face of the control mesh.", dealii::Patterns::Selection("1|3|6|7|12"));
+    add_enum_parameter(
+      prm,
+      "Even control mesh",
+      even,
+      {{"automatic", EvenControlMesh::automatic}, {"always", EvenControlMesh::always}, {"never", EvenControlMesh::never}},
+      "Whether control points move along the shell other than the material, so that they stay evenly spread; the surface moves the same. always: allowed where the "
+      "place of the material costs no energy (no membrane, Reference curvature flat or value); automatic: there with Bending form moment-only, whose forces pull "
+      "the material together. Steps are then at most 0.1 mu a^2 R / kappa_B, R the smallest radius of curvature.");
     prm.leave_subsection();
   }
 
@@ -188,6 +206,7 @@ namespace tanktread
     collect([&] { placement.check(); });
     collect([&] { check_mesh_file(capsule); });
     collect([&] { shell.check(); });
+    collect([&] { check_shell_mesh(shell_mesh, shell); });
     collect([&] { check_solver(scene, solver); });
     collect([&] { fluid_mesh.check(scene.box()); });
     collect([&] { output.check(); });
@@ -203,6 +222,21 @@ namespace tanktread
       {
         throw InputError(source.locate(error.what()));
       }
+  }
+
+  bool
+  Parameters::control_mesh_stays_even() const
+  {
+    switch (shell_mesh.even)
+      {
+        case EvenControlMesh::always:
+          return true;
+        case EvenControlMesh::never:
+          return false;
+        case EvenControlMesh::automatic:
+          break;
+      }
+    return shell.place_is_free() && shell.form == BendingForm::moment_only && scene.bending_modulus() > 0.;
   }
 
   Parameters

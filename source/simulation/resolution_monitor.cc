@@ -38,7 +38,7 @@ namespace tanktread
     context_.initial_triangle = worst_triangle(scene.capsule().topology().faces, scene.capsule().initial());
     context_.control_points   = scene.capsule().n_control_points();
     context_.bends            = parameters.scene.bending_modulus() > 0. || parameters.shell.thickness > 0.;
-    context_.moments_alone    = context_.bends && parameters.shell.form == BendingForm::moment_only;
+    context_.moments_alone    = context_.bends && parameters.shell.form == BendingForm::moment_only && !parameters.control_mesh_stays_even();
     context_.is_explicit      = parameters.solver.coupling == TimeCoupling::explicit_euler;
     context_.order            = order(parameters.time.scheme);
     context_.step             = parameters.time.step;

@@ -85,8 +85,9 @@ namespace tanktread
     {
       return "the worst triangle of a shell's control mesh has the quality " + number(q) + " (equal sides: 1, at first " + number(context.initial_triangle) +
         "), below " + number(warning_threshold(Concern::triangle, context)) + ": the mesh degenerates, and what is computed on it is not to be trusted. " +
-        (context.moments_alone ? "The moments alone leave it free to slide: take Capsule/Bending form = variational or a membrane"
-                               : "Take a shell that resists more (bending, area dilatation), shorter steps or an earlier Scene/End time") +
+        (context.moments_alone
+           ? "The moments alone leave it free to slide: take Capsule/Bending form = variational or a membrane; without one, Shell mesh/Even control mesh = automatic"
+           : "Take a shell that resists more (bending, area dilatation), shorter steps or an earlier Scene/End time") +
         "; a finer control mesh (Shell mesh/Level) only postpones it.";
     }
 

@@ -67,6 +67,9 @@ namespace tanktread
         run.left_out.push_back("shell thickness (0)");
       if (parameters.solver.interface == Interface::plain)
         run.left_out.push_back("the kink of the velocity and the jump of the pressure inside the cells that the shell cuts (Interface plain)");
+      if (parameters.control_mesh_stays_even())
+        run.included.push_back("control points that move along the shell to stay evenly spread (Even control mesh), not with the material; steps of at most " +
+                               number(TimeStepper::longest_step_along) + " mu a^2 R / kappa_B, R the smallest radius of curvature");
       if (parameters.shell.law == MembraneLaw::none)
         run.left_out.push_back("the membrane: the shell bends only (Membrane law none)");
       if (parameters.scene.bending_modulus() == 0.)
@@ -93,7 +96,7 @@ namespace tanktread
     , log_(dealii::Utilities::MPI::this_mpi_process(communicator) == 0, screen)
     , scene_(scene_description(parameters), communicator)
     , memory_(parameters.time)
-    , stepper_(parameters.time, parameters.solver.coupling, parameters.scene.end_time, scene_, memory_.steps, log_)
+    , stepper_(parameters.time, parameters.solver.coupling, parameters.scene.end_time, scene_, memory_.steps, log_, parameters.control_mesh_stays_even())
     , state_(scene_.initial_state())
     , resolution_(parameters, scene_, memory_.warnings, log_)
   {

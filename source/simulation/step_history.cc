@@ -110,7 +110,7 @@ namespace tanktread
 
 
   double
-  StepHistory::local_error(const double length, const ShellFields &x) const
+  StepHistory::local_error(const double length, const ShellFields &x, const ShellFields &normals) const
   {
     const std::size_t q = order(parameters_.scheme);
     if (levels_.size() < q + 1)
@@ -128,7 +128,7 @@ namespace tanktread
         for (std::size_t k = 1; k <= q + 1; ++k)
           for (std::size_t i = 0; i + k <= q + 1; ++i)
             differences[i] = (differences[i] - differences[i + 1]) / (times[i] - times[i + k]);
-        sum += differences[0].squaredNorm();
+        sum += normals.empty() ? differences[0].squaredNorm() : differences[0].cwiseProduct(normals[c]).rowwise().sum().squaredNorm();
         n += x[c].rows();
       }
     double weight;

@@ -6,9 +6,11 @@
 #include <tanktread/base/exceptions.h>
 #include <tanktread/fluid/field_transfer.h>
 #include <tanktread/simulation/time_stepper.h>
+#include <tanktread/surface/mesh_quality.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -17,6 +19,8 @@ namespace tanktread
 {
   namespace
   {
+    /** In so many steps unevenness falls by 1/e: slow enough for a velocity that is the same in the whole step. */
+    constexpr double steps_to_relax      = 5.;
     constexpr double allowed_energy_rise = 1e-6; // in a step with Time/Tolerance > 0, in a liquid at rest
 
     double
@@ -34,13 +38,20 @@ namespace tanktread
   } // namespace
 
 
-  TimeStepper::TimeStepper(const TimeParameters &parameters, const TimeCoupling coupling, const double end_time, Scene &scene, StepMemory &memory, Log &log)
+  TimeStepper::TimeStepper(const TimeParameters &parameters,
+                           const TimeCoupling    coupling,
+                           const double          end_time,
+                           Scene                &scene,
+                           StepMemory           &memory,
+                           Log                  &log,
+                           const bool            even)
     : parameters_(parameters)
     , coupling_(coupling)
     , end_time_(end_time)
     , scene_(scene)
     , memory_(memory)
     , log_(log)
+    , even_mesh_(even ? std::make_unique<EvenMesh>(scene.capsule()) : nullptr)
   {}
 
 
@@ -80,11 +91,14 @@ namespace tanktread
   StepResult
   TimeStepper::step(State &state, const double time, const bool mesh_is_new)
   {
+    if (even_mesh_)
+      material_velocity_ = scene_.level().shell_velocity(state);
     StepResult result = coupling_ == TimeCoupling::explicit_euler ? explicit_step(state, time) : implicit_step(state, time, mesh_is_new);
     if (result.beyond_mesh.empty())
       {
         const ShellFields x = positions(state);
-        result.energy_rise  = memory_.energy.rise(scene_, x);
+        if (!even_mesh_) // which does discrete work of its own
+          result.energy_rise = memory_.energy.rise(scene_, x);
         memory_.energy.add(scene_, x);
       }
     return result;
@@ -141,6 +155,50 @@ namespace tanktread
   }
 
 
+  double
+  TimeStepper::longest_step(const State &state) const
+  {
+    const double bending_modulus = scene_.description().moduli.bending_modulus;
+    if (!even_mesh_ || bending_modulus == 0.)
+      return parameters_.step;
+    double radius = std::numeric_limits<double>::infinity();
+    for (const CapsuleState &capsule : state.capsules)
+      radius = std::min(radius, smallest_radius_of_curvature(scene_.capsule().surface(), capsule.x));
+    return std::min(parameters_.step, longest_step_along * dealii::Utilities::MPI::broadcast(scene_.communicator(), radius, 0) / bending_modulus);
+  }
+
+
+  ShellFields
+  TimeStepper::velocity_along(const State &guess, const double length) const
+  {
+    const ShellConfigurations &shells = scene_.level().shells(guess);
+    ShellFields                result;
+    for (std::size_t c = 0; c < shells.size(); ++c)
+      result.push_back(even_mesh_->velocity(*shells[c], material_velocity_[c], 1. / (steps_to_relax * length)));
+    return result;
+  }
+
+
+  NewtonReport
+  TimeStepper::solve_stage(ShellSteps step, const FluidVector &uhat, const double time, const double length, State &next)
+  {
+    if (even_mesh_)
+      try
+        {
+          const ShellFields w = velocity_along(next, length);
+          for (std::size_t c = 0; c < w.size(); ++c)
+            step.xhat[c] += step.tau * w[c];
+        }
+      catch (const NumericalError &error) // the guess is degenerate
+        {
+          NewtonReport report;
+          report.message = error.what();
+          return report;
+        }
+    return scene_.solver().solve(next, {step.xhat, step.tau, time, &uhat});
+  }
+
+
   NewtonReport
   TimeStepper::solve_stages(const StepHistory &history, const State &state, const double time, const double length, Levels levels, State &next)
   {
@@ -154,7 +212,7 @@ namespace tanktread
         const ShellSteps  step      = history.stage(i, length, displacements);
         const FluidVector uhat      = this->uhat(history.stage_weights(i, length), state, stages);
         next                        = extrapolation(levels, end);
-        const NewtonReport of_stage = scene_.solver().solve(next, {step.xhat, step.tau, end, &uhat});
+        const NewtonReport of_stage = solve_stage(step, uhat, end, length, next);
         report.converged            = of_stage.converged;
         report.message              = of_stage.message;
         report.residuals            = of_stage.residuals;
@@ -214,7 +272,7 @@ namespace tanktread
   TimeStepper::refusal(const State &next, const double length)
   {
     std::string  result = scene_.refusal(next);
-    const double rise   = parameters_.tolerance > 0. ? memory_.energy.rise(scene_, positions(next)) : 0.;
+    const double rise   = parameters_.tolerance > 0. && !even_mesh_ ? memory_.energy.rise(scene_, positions(next)) : 0.;
     if (result.empty() && rise > allowed_energy_rise)
       {
         std::ostringstream text;
@@ -249,9 +307,13 @@ namespace tanktread
   bool
   TimeStepper::accept_step(State &state, const double time, const double shortest, const ShellFields &reference, State &next, StepResult &result)
   {
-    const double      length  = result.length;
-    const ShellFields x       = positions(next);
-    const double      measure = reference.empty() ? memory_.history.local_error(length, x) : root_mean_square_distance(x, reference);
+    const double      length = result.length;
+    const ShellFields x      = positions(next);
+    ShellFields       normals;
+    if (even_mesh_)
+      for (const std::shared_ptr<const ShellConfiguration> &shell : scene_.level().shells(next))
+        normals.push_back(shell->normal_field().rowwise().normalized());
+    const double measure = reference.empty() ? memory_.history.local_error(length, x, normals) : root_mean_square_distance(x, reference);
     // One answer for all ranks: logarithms and powers may differ in the last digit between kinds of processors.
     const double error  = dealii::Utilities::MPI::broadcast(scene_.elasticity().communicator(), measure, 0);
     const double factor = dealii::Utilities::MPI::broadcast(scene_.elasticity().communicator(), memory_.history.length_factor(error), 0);
@@ -283,7 +345,7 @@ namespace tanktread
   {
     StepResult   result;
     State        next;
-    const double wanted = std::min(memory_.next_length, end_time_ - time), shortest = std::min(wanted, 1e-3 * parameters_.step);
+    const double wanted = std::min({memory_.next_length, longest_step(state), end_time_ - time}), shortest = std::min(wanted, 1e-3 * parameters_.step);
     bool         first_attempt = true;
     std::string  failure;
     const auto   reference = first_step_by_second_order(state, time, wanted, result);
@@ -333,9 +395,15 @@ namespace tanktread
   TimeStepper::explicit_step(State &state, const double time)
   {
     StepResult result;
-    result.length              = std::min(parameters_.step, end_time_ - time);
-    const ShellFields velocity = scene_.level().shell_velocity(state);
-    State             next     = state;
+    result.length        = std::min(longest_step(state), end_time_ - time);
+    ShellFields velocity = scene_.level().shell_velocity(state);
+    if (even_mesh_)
+      {
+        const ShellFields w = velocity_along(state, result.length);
+        for (std::size_t c = 0; c < velocity.size(); ++c)
+          velocity[c] += w[c];
+      }
+    State next = state;
     for (std::size_t c = 0; c < velocity.size(); ++c)
       {
         check_explicit_step(result.length * velocity[c], result.length);

@@ -47,6 +47,12 @@ CASES = {
         1,
         ["case.prm:2: Capsule/Shape = cube; allowed: one of sphere, ellipsoid, oblate, biconcave, file"],
     ),
+    "points_leave_a_membrane": (
+        section("Shell mesh", "set Even control mesh = always"),
+        ["case.prm"],
+        1,
+        ["case.prm:2: Shell mesh/Even control mesh is always; allowed where the shell has a membrane"],
+    ),
     "deflated_to_nothing": (
         section("Capsule", "set Prestress = -1"),
         ["case.prm"],

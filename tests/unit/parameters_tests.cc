@@ -183,6 +183,28 @@ TEST(Parameters, WrongValuesAreRefused)
   expect_error("Output/Directory=/dev/null/output", "is not a folder");
 }
 
+TEST(Parameters, ControlPointsLeaveTheMaterialOnlyWhereItsPlaceIsFree)
+{
+  const File file("");
+  const auto stays_even = [&](std::vector<std::string> overrides, const std::string &choice) {
+    overrides.push_back("Shell mesh/Even control mesh=" + choice);
+    overrides.push_back("Scene/Reduced bending modulus=0.1");
+    return read_parameters(file.path.string(), overrides).control_mesh_stays_even();
+  };
+  const std::string none = "Capsule/Membrane law=none", moments = "Capsule/Bending form=moment-only", initial = "Capsule/Reference curvature=initial";
+  EXPECT_TRUE(stays_even({none, moments}, "automatic"));
+  EXPECT_TRUE(stays_even({none, moments, "Capsule/Reference curvature=value", "Capsule/Reference curvature value=-1"}, "automatic"));
+  EXPECT_FALSE(stays_even({none, moments}, "never"));
+  EXPECT_FALSE(stays_even({none}, "automatic"));
+  EXPECT_TRUE(stays_even({none}, "always"));
+  EXPECT_FALSE(stays_even({moments}, "automatic"));
+  EXPECT_FALSE(stays_even({none, moments, initial}, "automatic"));
+  EXPECT_FALSE(stays_even({moments, "Capsule/Thickness=0.1"}, "automatic"));
+  expect_error("Shell mesh/Even control mesh=sometimes", "allowed: one of automatic, always, never");
+  expect_error("Shell mesh/Even control mesh=always", "allowed where the shell has a membrane, so that the place of the material matters: automatic or never.");
+  EXPECT_NE(error_of({"Shell mesh/Even control mesh=always", none, initial}).find("allowed where Capsule/Reference curvature is initial"), std::string::npos);
+}
+
 TEST(Parameters, MeaninglessPairsAreRefused)
 {
   EXPECT_NE(error_of({"Capsule/Membrane law=Skalak", "Capsule/Thickness=0.1"}).find("Capsule/Thickness"), std::string::npos);

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <tanktread/base/exceptions.h>
 #include <tanktread/simulation/time_stepper.h>
+#include <tanktread/surface/mesh_quality.h>
+#include <tanktread/surface/surface_geometry.h>
 
 #include "small_scene.h"
 
@@ -20,11 +22,12 @@ namespace
     SteppedScene(SceneDescription      description,
                  const TimeParameters &time,
                  const double          end_time = 100.,
-                 const TimeCoupling    coupling = TimeCoupling::implicit_newton)
+                 const TimeCoupling    coupling = TimeCoupling::implicit_newton,
+                 const bool            even     = false)
       : scene(std::move(description))
       , memory(time)
       , log(is_root(), screen)
-      , stepper(time, coupling, end_time, scene, memory, log)
+      , stepper(time, coupling, end_time, scene, memory, log, even)
     {
       scene.solver().solve_flow(scene.state);
     }
@@ -156,6 +159,113 @@ TEST(TimeStepper, TheFirstStepIsOfSecondOrder)
       EXPECT_LT(errors.back(), 0.1 * euler);
     }
   EXPECT_GT(std::log2(errors[0] / errors[1]), 2.5);
+}
+
+
+namespace
+{
+  /** An ellipsoid without membrane in a liquid at rest. */
+  SceneDescription
+  bending_alone(const BendingForm form)
+  {
+    SceneDescription result = small_scene({1., 1.}, 0., ellipsoid(1.4, 1.2, 1.), tight(1e-8, 1e-2));
+    result.shell.law        = MembraneLaw::none;
+    result.shell.form       = form;
+    return result;
+  }
+
+  struct Relaxed
+  {
+    Eigen::Vector3d axes; // L, B, W
+    ShellFields     x;
+    double          volume_error;
+  };
+
+  Relaxed
+  relax(const BendingForm form, const double end, const unsigned int n, const TimeScheme scheme, const bool even)
+  {
+    SteppedScene run(bending_alone(form), steps(end / std::max(n, 1u), scheme), 100., TimeCoupling::implicit_newton, even);
+    run.start();
+    for (unsigned int i = 0; i < n; ++i)
+      EXPECT_EQ(run.stepper.step(run.scene.state, end / n * i, false).length, end / n);
+    const Capsule         &capsule = run.scene.capsule();
+    const InertiaEllipsoid shape   = inertia_ellipsoid(capsule.surface(), run.scene.x());
+    return {{shape.L, shape.B, shape.W}, positions(run.scene.state), enclosed_volume(capsule.surface(), run.scene.x()) / capsule.volume() - 1.};
+  }
+} // namespace
+
+
+TEST(TimeStepper, ShapesMoveTheSameWhereverTheirPointsAre)
+{
+  // Control points that are material and others: different places on the same shapes.
+  for (const BendingForm form : {BendingForm::variational, BendingForm::moment_only})
+    {
+      const Relaxed start = relax(form, 0., 0, TimeScheme::bdf3, false), material = relax(form, 0.1, 5, TimeScheme::bdf3, false),
+                    even  = relax(form, 0.1, 5, TimeScheme::bdf3, true);
+      const double change = (material.axes - start.axes).norm(), difference = (even.axes - material.axes).norm(),
+                   places = largest_difference(even.x, material.x);
+      if (is_root())
+        std::cout << "axes change by " << change << ", differ by " << difference << ", points by " << places << "; volume error " << even.volume_error
+                  << std::endl;
+      EXPECT_GT(change, 0.05);
+      EXPECT_LT(difference, 0.01 * change);
+      EXPECT_GT(places, 10. * difference);
+      EXPECT_LT(std::abs(even.volume_error), 1e-7);
+    }
+}
+
+
+TEST(TimeStepper, ShapesNearASphereRelaxAsTheoryHasIt)
+{
+  // Either form of the bending forces: w falls with exp(-96/35 t) for l = 2, theory (16c).
+  for (const BendingForm form : {BendingForm::variational, BendingForm::moment_only})
+    {
+      SceneDescription description = bending_alone(form);
+      description.shape            = make_capsule(ellipsoid(1.03, 1., 0.97), 2);
+      description.box              = 7.5;
+      description.box.faces.fill(Faces::prescribed);
+      description.liquids.unbounded = true;
+      description.solver            = tight(1e-9, 1e-2, Interface::enriched);
+      SteppedScene run(std::move(description), steps(0.05, TimeScheme::sdirk3), 100., TimeCoupling::implicit_newton, true);
+      run.start();
+      const auto   size   = [&] { return inertia_ellipsoid(run.scene.capsule().surface(), run.scene.x()).taylor_parameter; };
+      const double before = size();
+      for (unsigned int i = 0; i < 4; ++i)
+        run.stepper.step(run.scene.state, 0.05 * i, false);
+      const double rate = std::log(before / size()) / 0.2;
+      if (is_root())
+        std::cout << "rate " << rate << ", theory " << 96. / 35. << std::endl;
+      EXPECT_NEAR(rate, 96. / 35., 0.02 * 96. / 35.);
+    }
+}
+
+
+TEST(TimeStepper, StepsOfPointsThatMoveAlongAreShort)
+{
+  for (const bool even : {false, true})
+    {
+      SteppedScene run(bending_alone(BendingForm::moment_only), steps(0.08), 100., TimeCoupling::implicit_newton, even);
+      run.start();
+      const double longest = TimeStepper::longest_step_along * smallest_radius_of_curvature(run.scene.capsule().surface(), run.scene.x());
+      EXPECT_LT(longest, 0.075);
+      EXPECT_EQ(run.stepper.step(run.scene.state, 0., false).length, even ? longest : 0.08);
+    }
+}
+
+
+TEST(TimeStepper, StepsAreAsAccurateWithPointsThatMoveAlong)
+{
+  // Differences of the axes after 8 and 16 steps. Where the points are is of first order in the step, and shows in the shape by the error of the control mesh.
+  for (const TimeScheme scheme : {TimeScheme::bdf2, TimeScheme::sdirk2, TimeScheme::bdf3})
+    {
+      const auto difference = [&](const bool even) {
+        return (relax(BendingForm::moment_only, 0.16, 8, scheme, even).axes - relax(BendingForm::moment_only, 0.16, 16, scheme, even).axes).norm();
+      };
+      const double material = difference(false), along = difference(true);
+      if (is_root())
+        std::cout << "scheme of order " << order(scheme) << ": " << material << ", with points that move along " << along << std::endl;
+      EXPECT_LT(along, 1.5 * material + 1e-5);
+    }
 }
 
 

@@ -51,6 +51,13 @@ namespace tanktread
     /** Throws InputError on values that are not allowed or not implemented. */
     void
     check() const;
+
+    /** Whether it costs no energy to move the material along the shell, the surface as it is: nothing but bending about one curvature everywhere. */
+    bool
+    place_is_free() const
+    {
+      return law == MembraneLaw::none && thickness == 0. && reference != ReferenceCurvature::initial;
+    }
   };
 
   /** Moduli in the units of the computation. */

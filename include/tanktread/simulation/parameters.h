@@ -22,11 +22,21 @@ namespace tanktread
 {
   class ParameterSource;
 
+  /** Whether the control points leave the material to stay evenly spread, see EvenMesh. */
+  enum class EvenControlMesh
+  {
+    automatic, // where forces pull the material along the shell and nothing holds it
+    always,    // wherever its place costs no energy, which has to be so
+    never
+  };
+
   /** Section "Shell mesh". */
   struct ShellMeshParameters
   {
     unsigned int level      = 3; // 10 * 4^level + 2 control points
     unsigned int quadrature = 3; // points a face
+
+    EvenControlMesh even = EvenControlMesh::automatic;
 
     /** Declares section "Shell mesh" in `prm`; parsing fills this object, which has to outlive `prm`. */
     void
@@ -47,6 +57,10 @@ namespace tanktread
     SolverParameters       solver;
     OutputParameters       output;
     StudyParameters        study;
+
+    /** Whether the control points are moved along the shells. */
+    bool
+    control_mesh_stays_even() const;
 
     std::vector<Choice> choices; // made for Accuracy/Target error, and set
 

@@ -40,7 +40,7 @@ namespace tanktread
     double       initial_triangle = 1.;    // worst_triangle() of the initial shape: flat ones begin with long triangles
     unsigned int control_points   = 0;     // of a capsule
     bool         bends            = true;  // whether the shell resists bending
-    bool         moments_alone    = false; // Capsule/Bending form = moment-only
+    bool         moments_alone    = false; // Capsule/Bending form = moment-only, control points that move with the material
     bool         is_explicit      = false; // Solver/Coupling
     unsigned int order            = 3;     // of Time/Scheme
     double       step             = 0.;    // Time/Step

@@ -68,9 +68,11 @@ namespace tanktread
      *     multistep: tau (t - t_n) ... (t - t_{n+1-q}) x^(q+1) / (q+1)!,   SDIRK: its constant for linear motion times dt^(q+1) x^(q+1).
      *
      * Zero while there are too few levels to tell, as at the start.
+     *
+     * @param normals where these are given, unit vectors at the control points, the part along them counts alone: that of the shape.
      */
     double
-    local_error(double length, const ShellFields &x) const;
+    local_error(double length, const ShellFields &x, const ShellFields &normals = {}) const;
 
     /** Factor by which the length of a step with this local error should change so that it meets Time/Tolerance, between 0.3 and 1.5. */
     double
