@@ -93,8 +93,8 @@ In shear, bending has the form `moment-only`, the paper's.
 
 Choices where the paper leaves one: "inclined at 45°" is read as the long axis of the section at 45° to the flow (`Inclination = 0.25`); oblate and biconcave shells bend about their
 initial curvature, spheres and relaxing shells about a flat one; Skalak's C is 150 in figs. 9 and 10 and 100 in figs. 11 and 12. In the relaxation scenes the membrane is absent (`Membrane law = none`): with one that is at ease in the initial
-shape the capsule would not become a sphere. They bend in the form `variational`: the forces of `moment-only` along the shell (theory, (16a)) pull the material, which no membrane holds, together at the
-rim, until the mesh there is degenerate; the run `ellipsoid_moment_only` shows how far that goes.
+shape the capsule would not become a sphere. They bend in the form `variational`, and in the paper's own, `moment-only`, in the runs of that name: its forces along the shell (theory, (16a)) pull the material, which no membrane
+holds, together at the rim, so there the control points do not go with the material but stay evenly spread (theory, section 5.4).
 """
 
 
