@@ -208,8 +208,9 @@ namespace tanktread
   void
   Simulation::remember(std::vector<CapsuleObservables> &capsules)
   {
-    // The moments alone are not the derivative of an energy.
-    const bool has_energy = parameters_.shell.form == BendingForm::variational || parameters_.scene.bending_modulus() == 0.;
+    // The moments alone are not the derivative of an energy; control points that move along the shell do discrete work of their own.
+    const bool has_energy =
+      (parameters_.shell.form == BendingForm::variational || parameters_.scene.bending_modulus() == 0.) && !parameters_.control_mesh_stays_even();
     for (std::size_t c = 0; c < capsules.size(); ++c)
       {
         CapsuleObservables  &o = capsules[c];
