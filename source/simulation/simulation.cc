@@ -69,7 +69,7 @@ namespace tanktread
         run.left_out.push_back("the kink of the velocity and the jump of the pressure inside the cells that the shell cuts (Interface plain)");
       if (parameters.control_mesh_stays_even())
         run.included.push_back("control points that move along the shell to stay evenly spread (Even control mesh), not with the material; steps of at most " +
-                               number(TimeStepper::longest_step_along) + " mu a^2 R / kappa_B, R the smallest radius of curvature");
+                               number(PointsAlong::longest_step_factor) + " mu a^2 R / kappa_B, R the smallest radius of curvature");
       if (parameters.shell.law == MembraneLaw::none)
         run.left_out.push_back("the membrane: the shell bends only (Membrane law none)");
       if (parameters.scene.bending_modulus() == 0.)

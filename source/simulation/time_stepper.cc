@@ -6,11 +6,9 @@
 #include <tanktread/base/exceptions.h>
 #include <tanktread/fluid/field_transfer.h>
 #include <tanktread/simulation/time_stepper.h>
-#include <tanktread/surface/mesh_quality.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -19,8 +17,6 @@ namespace tanktread
 {
   namespace
   {
-    /** In so many steps unevenness falls by 1/e: slow enough for a velocity that is the same in the whole step. */
-    constexpr double steps_to_relax      = 5.;
     constexpr double allowed_energy_rise = 1e-6; // in a step with Time/Tolerance > 0, in a liquid at rest
 
     double
@@ -51,7 +47,7 @@ namespace tanktread
     , scene_(scene)
     , memory_(memory)
     , log_(log)
-    , even_mesh_(even ? std::make_unique<EvenMesh>(scene.capsule()) : nullptr)
+    , points_along_(even ? std::make_unique<PointsAlong>(scene) : nullptr)
   {}
 
 
@@ -91,13 +87,13 @@ namespace tanktread
   StepResult
   TimeStepper::step(State &state, const double time, const bool mesh_is_new)
   {
-    if (even_mesh_)
-      material_velocity_ = scene_.level().shell_velocity(state);
+    if (points_along_)
+      points_along_->begin_step(scene_.level().shell_velocity(state));
     StepResult result = coupling_ == TimeCoupling::explicit_euler ? explicit_step(state, time) : implicit_step(state, time, mesh_is_new);
     if (result.beyond_mesh.empty())
       {
         const ShellFields x = positions(state);
-        if (!even_mesh_) // which does discrete work of its own
+        if (!points_along_) // which does discrete work of its own
           result.energy_rise = memory_.energy.rise(scene_, x);
         memory_.energy.add(scene_, x);
       }
@@ -155,37 +151,13 @@ namespace tanktread
   }
 
 
-  double
-  TimeStepper::longest_step(const State &state) const
-  {
-    const double bending_modulus = scene_.description().moduli.bending_modulus;
-    if (!even_mesh_ || bending_modulus == 0.)
-      return parameters_.step;
-    double radius = std::numeric_limits<double>::infinity();
-    for (const CapsuleState &capsule : state.capsules)
-      radius = std::min(radius, smallest_radius_of_curvature(scene_.capsule().surface(), capsule.x));
-    return std::min(parameters_.step, longest_step_along * dealii::Utilities::MPI::broadcast(scene_.communicator(), radius, 0) / bending_modulus);
-  }
-
-
-  ShellFields
-  TimeStepper::velocity_along(const State &guess, const double length) const
-  {
-    const ShellConfigurations &shells = scene_.level().shells(guess);
-    ShellFields                result;
-    for (std::size_t c = 0; c < shells.size(); ++c)
-      result.push_back(even_mesh_->velocity(*shells[c], material_velocity_[c], 1. / (steps_to_relax * length)));
-    return result;
-  }
-
-
   NewtonReport
   TimeStepper::solve_stage(ShellSteps step, const FluidVector &uhat, const double time, const double length, State &next)
   {
-    if (even_mesh_)
+    if (points_along_)
       try
         {
-          const ShellFields w = velocity_along(next, length);
+          const ShellFields w = points_along_->velocity(scene_.level().shells(next), length);
           for (std::size_t c = 0; c < w.size(); ++c)
             step.xhat[c] += step.tau * w[c];
         }
@@ -272,7 +244,7 @@ namespace tanktread
   TimeStepper::refusal(const State &next, const double length)
   {
     std::string  result = scene_.refusal(next);
-    const double rise   = parameters_.tolerance > 0. && !even_mesh_ ? memory_.energy.rise(scene_, positions(next)) : 0.;
+    const double rise   = parameters_.tolerance > 0. && !points_along_ ? memory_.energy.rise(scene_, positions(next)) : 0.;
     if (result.empty() && rise > allowed_energy_rise)
       {
         std::ostringstream text;
@@ -307,13 +279,10 @@ namespace tanktread
   bool
   TimeStepper::accept_step(State &state, const double time, const double shortest, const ShellFields &reference, State &next, StepResult &result)
   {
-    const double      length = result.length;
-    const ShellFields x      = positions(next);
-    ShellFields       normals;
-    if (even_mesh_)
-      for (const std::shared_ptr<const ShellConfiguration> &shell : scene_.level().shells(next))
-        normals.push_back(shell->normal_field().rowwise().normalized());
-    const double measure = reference.empty() ? memory_.history.local_error(length, x, normals) : root_mean_square_distance(x, reference);
+    const double      length  = result.length;
+    const ShellFields x       = positions(next);
+    const ShellFields normals = points_along_ ? unit_normals(scene_.level().shells(next)) : ShellFields();
+    const double      measure = reference.empty() ? memory_.history.local_error(length, x, normals) : root_mean_square_distance(x, reference);
     // One answer for all ranks: logarithms and powers may differ in the last digit between kinds of processors.
     const double error  = dealii::Utilities::MPI::broadcast(scene_.elasticity().communicator(), measure, 0);
     const double factor = dealii::Utilities::MPI::broadcast(scene_.elasticity().communicator(), memory_.history.length_factor(error), 0);
@@ -397,9 +366,9 @@ namespace tanktread
     StepResult result;
     result.length        = std::min(longest_step(state), end_time_ - time);
     ShellFields velocity = scene_.level().shell_velocity(state);
-    if (even_mesh_)
+    if (points_along_)
       {
-        const ShellFields w = velocity_along(state, result.length);
+        const ShellFields w = points_along_->velocity(scene_.level().shells(state), result.length);
         for (std::size_t c = 0; c < velocity.size(); ++c)
           velocity[c] += w[c];
       }

@@ -246,7 +246,7 @@ TEST(TimeStepper, StepsOfPointsThatMoveAlongAreShort)
     {
       SteppedScene run(bending_alone(BendingForm::moment_only), steps(0.08), 100., TimeCoupling::implicit_newton, even);
       run.start();
-      const double longest = TimeStepper::longest_step_along * smallest_radius_of_curvature(run.scene.capsule().surface(), run.scene.x());
+      const double longest = PointsAlong::longest_step_factor * smallest_radius_of_curvature(run.scene.capsule().surface(), run.scene.x());
       EXPECT_LT(longest, 0.075);
       EXPECT_EQ(run.stepper.step(run.scene.state, 0., false).length, even ? longest : 0.08);
     }

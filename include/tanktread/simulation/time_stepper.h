@@ -5,10 +5,11 @@
 #define tanktread_simulation_time_stepper_h
 
 #include <tanktread/base/log.h>
-#include <tanktread/shell/even_mesh.h>
+#include <tanktread/simulation/points_along.h>
 #include <tanktread/simulation/run_memory.h>
 #include <tanktread/solver/scene.h>
 
+#include <algorithm>
 #include <deque>
 #include <limits>
 #include <memory>
@@ -43,14 +44,11 @@ namespace tanktread
   class TimeStepper
   {
   public:
-    /** Longest step of control points that move along the shells, in mu a^2 R / kappa_B, R the smallest radius of curvature; measured on a sphere, 0.2 is too long. */
-    static constexpr double longest_step_along = 0.1;
-
     /**
      * All of class type but `parameters` are kept by reference.
      *
      * @param even whether control points are moved along the shells, see EvenMesh: then local errors are those of the shapes alone, and steps end at
-     * longest_step_along.
+     * PointsAlong::longest_step().
      */
     TimeStepper(const TimeParameters &parameters, TimeCoupling coupling, double end_time, Scene &scene, StepMemory &memory, Log &log, bool even = false);
 
@@ -112,12 +110,12 @@ namespace tanktread
     /** Makes `next` the present state, if its local error allows it, and sets the length of the step to come. @param reference see first_step_by_second_order(), or empty. */
     bool
     accept_step(State &state, double time, double shortest, const ShellFields &reference, State &next, StepResult &result);
-    /** Time/Step, or less where control points move along the shells: longest_step_along. */
+    /** Time/Step, or less where control points move along the shells. */
     double
-    longest_step(const State &state) const;
-    /** How fast the control points of shells near those of `guess` are to move along them in a step of `length`. */
-    ShellFields
-    velocity_along(const State &guess, double length) const;
+    longest_step(const State &state) const
+    {
+      return points_along_ ? std::min(parameters_.step, PointsAlong::longest_step(scene_, state)) : parameters_.step;
+    }
     /** One stage: `next`, a guess, becomes its solution. */
     NewtonReport
     solve_stage(ShellSteps step, const FluidVector &uhat, double time, double length, State &next);
@@ -136,8 +134,7 @@ namespace tanktread
     StepMemory          &memory_;
     Log                 &log_;
 
-    const std::unique_ptr<EvenMesh> even_mesh_;         // none where control points are material
-    ShellFields                     material_velocity_; // at the present level, where they are not
+    const std::unique_ptr<PointsAlong> points_along_; // none where control points are material
   };
 } // namespace tanktread
 
