@@ -327,15 +327,21 @@ namespace tanktread
   StepResult
   Simulation::step()
   {
-    StepResult result = stepper_.step(state_, memory_.time, false);
-    if (result.beyond_mesh.empty())
-      return result;
-    log_.line("Step of length " + number(result.length) + " repeated on a mesh around its end too: the shells have left the finest cells.");
-    const unsigned int remeshing = refine_around_shells({result.beyond_mesh});
-    StepResult         again     = stepper_.step(state_, memory_.time, true);
-    again.newton_iterations += result.newton_iterations;
-    again.linear_iterations += result.linear_iterations + remeshing;
-    return again;
+    constexpr std::size_t    max_meshes = 4; // three stages that end apart, and one that first was not where it is on finer cells
+    std::vector<ShellFields> ends;
+    StepResult               result = stepper_.step(state_, memory_.time, false);
+    while (!result.beyond_mesh.empty())
+      {
+        ends.push_back(result.beyond_mesh);
+        log_.line("Step of length " + number(result.length) + " repeated on a mesh around its " + (ends.size() == 1 ? "end" : "stages and its end") +
+                  " too: the shells have left the finest cells.");
+        const unsigned int remeshing = refine_around_shells(ends);
+        StepResult         again     = stepper_.step(state_, memory_.time, ends.size() == max_meshes);
+        again.newton_iterations += result.newton_iterations;
+        again.linear_iterations += result.linear_iterations + remeshing;
+        result = std::move(again);
+      }
+    return result;
   }
 
 

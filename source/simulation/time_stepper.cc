@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -85,11 +86,11 @@ namespace tanktread
 
 
   StepResult
-  TimeStepper::step(State &state, const double time, const bool mesh_is_new)
+  TimeStepper::step(State &state, const double time, const bool last_mesh)
   {
     if (points_along_)
       points_along_->begin_step(scene_.level().shell_velocity(state));
-    StepResult result = coupling_ == TimeCoupling::explicit_euler ? explicit_step(state, time) : implicit_step(state, time, mesh_is_new);
+    StepResult result = coupling_ == TimeCoupling::explicit_euler ? explicit_step(state, time) : implicit_step(state, time, last_mesh);
     if (result.beyond_mesh.empty())
       {
         const ShellFields x = positions(state);
@@ -101,118 +102,19 @@ namespace tanktread
   }
 
 
-  State
-  TimeStepper::extrapolation(const Levels &levels, const double time) const
-  {
-    const std::size_t          n = std::min<std::size_t>(levels.size(), 3);
-    std::vector<State>         carried;
-    std::vector<const State *> states;
-    std::vector<double>        weights;
-    for (std::size_t i = 0; i < n; ++i)
-      {
-        carried.push_back(*levels[i].second);
-        scene_.level().carry_pressure(carried.back());
-        double weight = 1.;
-        for (std::size_t j = 0; j < n; ++j)
-          if (j != i)
-            weight *= (time - levels[j].first) / (levels[i].first - levels[j].first);
-        weights.push_back(weight);
-      }
-    for (const State &state : carried)
-      states.push_back(&state);
-    return combination(weights, states);
-  }
-
-
-  FluidVector
-  TimeStepper::uhat(const StageWeights &weights, const State &state, const std::deque<State> &stages) const
-  {
-    FluidVector result;
-    if (!scene_.level().has_inertia())
-      return result;
-    result = state.fluid.block(velocity_block);
-    result *= weights.levels[0];
-    for (std::size_t i = 1; i < weights.levels.size(); ++i)
-      result.add(weights.levels[i], memory_.previous[i - 1].state.fluid.block(velocity_block));
-    for (std::size_t j = 0; j < stages.size(); ++j)
-      result.add(weights.stages[j], stages[j].fluid.block(velocity_block));
-    return result;
-  }
-
-
-  ShellFields
-  TimeStepper::displacement(const State &stage, const ShellFields &xhat) const
-  {
-    const ShellConfigurations &shells = scene_.level().shells(stage);
-    ShellFields                result;
-    for (std::size_t c = 0; c < shells.size(); ++c)
-      result.push_back(stage.capsules[c].x - xhat[c] - stage.capsules[c].volume_shift * shells[c]->normal_field());
-    return result;
-  }
-
-
   NewtonReport
-  TimeStepper::solve_stage(ShellSteps step, const FluidVector &uhat, const double time, const double length, State &next)
-  {
-    if (points_along_)
-      try
-        {
-          const ShellFields w = points_along_->velocity(scene_.level().shells(next), length);
-          for (std::size_t c = 0; c < w.size(); ++c)
-            step.xhat[c] += step.tau * w[c];
-        }
-      catch (const NumericalError &error) // the guess is degenerate
-        {
-          NewtonReport report;
-          report.message = error.what();
-          return report;
-        }
-    return scene_.solver().solve(next, {step.xhat, step.tau, time, &uhat});
-  }
-
-
-  NewtonReport
-  TimeStepper::solve_stages(const StepHistory &history, const State &state, const double time, const double length, Levels levels, State &next)
-  {
-    const unsigned int       n = history.n_stages();
-    std::deque<State>        stages; // does not move what it holds, which `levels` points to
-    std::vector<ShellFields> displacements;
-    NewtonReport             report;
-    for (unsigned int i = 0; i < n; ++i)
-      {
-        const double      end       = time + history.stage_end(i) * length;
-        const ShellSteps  step      = history.stage(i, length, displacements);
-        const FluidVector uhat      = this->uhat(history.stage_weights(i, length), state, stages);
-        next                        = extrapolation(levels, end);
-        const NewtonReport of_stage = solve_stage(step, uhat, end, length, next);
-        report.converged            = of_stage.converged;
-        report.message              = of_stage.message;
-        report.residuals            = of_stage.residuals;
-        report.newton_iterations += of_stage.newton_iterations;
-        report.linear_iterations += of_stage.linear_iterations;
-        if (!report.converged || i + 1 == n || scene_.coupling().jumps().n_coarse_cut_cells() > 0)
-          break;
-        displacements.push_back(displacement(next, step.xhat));
-        stages.push_back(std::move(next));
-        levels.emplace_front(end, &stages.back());
-      }
-    return report;
-  }
-
-
-  NewtonReport
-  TimeStepper::try_step(const State &state, const double time, const double length, const bool from_extrapolation, State &next)
+  TimeStepper::try_step(const State &state, const double time, const double length, const Start from, State &next)
   {
     Levels levels = {{time, &state}};
-    if (from_extrapolation)
+    if (from == Start::extrapolation)
       for (const StepMemory::Level &level : memory_.previous)
         levels.emplace_back(level.time, &level.state);
-    const NewtonReport report = solve_stages(memory_.history, state, time, length, std::move(levels), next);
+    const NewtonReport report = solve_stages(memory_.history, state, time, length, from, std::move(levels), next);
     if (!report.converged)
       {
-        std::ostringstream text;
-        text << "Step of length " << length << " failed from the " << (from_extrapolation ? "extrapolated" : "last") << " state: " << report.message
-             << " (residuals";
+        constexpr const char *names[] = {"extrapolated state", "last state", "last state by continuation"};
+        std::ostringstream    text;
+        text << "Step of length " << length << " failed from the " << names[int(from)] << ": " << report.message << " (residuals";
         for (const double residual : report.residuals)
           text << ' ' << residual;
         log_.line(text.str() + ").");
@@ -231,7 +133,7 @@ namespace tanktread
     StepHistory history(second);
     history.add(time, positions(state));
     State              end;
-    const NewtonReport report = solve_stages(history, state, time, length, {{time, &state}}, end);
+    const NewtonReport report = solve_stages(history, state, time, length, Start::last, {{time, &state}}, end);
     result.newton_iterations += report.newton_iterations;
     result.linear_iterations += report.linear_iterations;
     if (!report.converged || scene_.coupling().jumps().n_coarse_cut_cells() > 0)
@@ -261,11 +163,13 @@ namespace tanktread
   TimeStepper::attempts(const State &state, const double time, const bool first_attempt, StepResult &result, State &next)
   {
     std::string failure;
-    for (const bool from_extrapolation : {true, false})
+    for (const Start from : {Start::extrapolation, Start::last, Start::continuation})
       {
-        if (from_extrapolation && (memory_.previous.empty() || !first_attempt))
+        if (from == Start::extrapolation && (memory_.previous.empty() || !first_attempt))
           continue;
-        const NewtonReport report = try_step(state, time, result.length, from_extrapolation, next);
+        if (from == Start::continuation && !first_attempt)
+          continue;
+        const NewtonReport report = try_step(state, time, result.length, from, next);
         result.newton_iterations += report.newton_iterations;
         result.linear_iterations += report.linear_iterations;
         if (report.converged)
@@ -309,12 +213,33 @@ namespace tanktread
   }
 
 
+  double
+  TimeStepper::longest_start(const State &state) const
+  {
+    constexpr double farthest = 0.1; // a
+    if (parameters_.tolerance == 0. || !memory_.previous.empty())
+      return std::numeric_limits<double>::infinity();
+    const ShellFields velocity    = scene_.level().shell_velocity(state);
+    const ShellFields undisturbed = scene_.coupling().undisturbed_velocity(scene_.level().flow(), scene_.level().shells(state));
+    double            sum         = 0.;
+    Eigen::Index      n           = 0;
+    for (std::size_t c = 0; c < velocity.size(); ++c)
+      {
+        sum += (velocity[c] - undisturbed[c]).squaredNorm();
+        n += velocity[c].rows();
+      }
+    return dealii::Utilities::MPI::broadcast(scene_.elasticity().communicator(), farthest / std::sqrt(sum / n), 0);
+  }
+
+
   StepResult
-  TimeStepper::implicit_step(State &state, const double time, const bool mesh_is_new)
+  TimeStepper::implicit_step(State &state, const double time, const bool last_mesh)
   {
     StepResult   result;
     State        next;
-    const double wanted = std::min({memory_.next_length, longest_step(state), end_time_ - time}), shortest = std::min(wanted, 1e-3 * parameters_.step);
+    const double start  = longest_start(state);
+    memory_.shortest    = std::min({memory_.shortest, 1e-3 * parameters_.step, 0.05 * start});
+    const double wanted = std::min({memory_.next_length, longest_step(state), end_time_ - time, start}), shortest = std::min(wanted, memory_.shortest);
     bool         first_attempt = true;
     std::string  failure;
     const auto   reference = first_step_by_second_order(state, time, wanted, result);
@@ -324,7 +249,7 @@ namespace tanktread
         first_attempt = false;
         if (failure.empty() && scene_.coupling().jumps().n_coarse_cut_cells() > 0)
           {
-            if (!mesh_is_new)
+            if (!last_mesh)
               {
                 result.beyond_mesh = positions(next);
                 return result;
@@ -340,8 +265,8 @@ namespace tanktread
           result.length = memory_.next_length;
       }
     std::ostringstream message;
-    message << "No time step between " << shortest << " and " << wanted
-            << " could be solved (none is tried below a thousandth of Time/Step); the last attempt: " << failure << '.';
+    message << "No time step between " << shortest << " and " << wanted << " could be solved (none is tried below " << memory_.shortest
+            << "); the last attempt: " << failure << '.';
     throw NumericalError(message.str());
   }
 

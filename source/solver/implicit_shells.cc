@@ -59,10 +59,11 @@ namespace tanktread
 
 
   void
-  ImplicitShells::renew(std::vector<ImplicitOperator> operators, const double tau)
+  ImplicitShells::renew(Operators operators, const double tau, const std::function<Operators()> &definite)
   {
-    memory_.operators = std::move(operators);
-    memory_.tau       = tau;
+    memory_.operators  = std::move(operators);
+    memory_.tau        = tau;
+    char is_indefinite = 0;
     std::fill(has_factors_.begin(), has_factors_.end(), 0);
     try
       {
@@ -73,7 +74,12 @@ namespace tanktread
                 multigrids_[c]->set_up(memory_.operators[c].S);
               const bool is_good = multigrids_[c] && multigrids_[c]->convergence_factor() < largest_convergence_factor;
               has_factors_[c]    = layout_.owns(c) && !is_good;
+              if (multigrids_[c] && !is_good)
+                is_indefinite = 1;
             }
+        MPI_Allreduce(MPI_IN_PLACE, &is_indefinite, 1, MPI_CHAR, MPI_MAX, layout_.communicator());
+        if (is_indefinite && definite)
+          return renew(definite(), tau);
         MPI_Allreduce(MPI_IN_PLACE, has_factors_.data(), int(has_factors_.size()), MPI_CHAR, MPI_MAX, layout_.communicator());
         on_all_ranks(layout_.communicator(), [&] {
           for (unsigned int c = 0; c < layout_.n_capsules(); ++c)

@@ -90,10 +90,10 @@ namespace tanktread
 
 
   ImplicitOperator
-  LinearisedShell::implicit_operator(const Linearisation &choice) const
+  LinearisedShell::implicit_operator(const Linearisation &choice, SparseMatrix stiffness) const
   {
     return tanktread::implicit_operator(inverse_mobility(capsule_.surface(), shell_->x(), choice.h, choice.viscosity),
-                                        stiffness_,
+                                        std::move(stiffness),
                                         gradient_about(choice.flow, shell_->x()),
                                         tau_);
   }
@@ -185,10 +185,24 @@ namespace tanktread
       shells_.emplace_back(elasticity, coupling, c, state.capsules[c], shells[c], velocities[c], velocity_gradients[c], choice);
     if (tau_ == 0. || implicit_shells.serves(tau_))
       return;
-    std::vector<ImplicitOperator> operators;
+    ImplicitShells::Operators operators;
     for (unsigned int c = 0; c < shells.size(); ++c)
       operators.push_back(implicit_shells.works_on(c) ? shells_[c].implicit_operator(choice) : ImplicitOperator());
-    implicit_shells.renew(std::move(operators), tau_);
+    const auto positive_ones = [&]() {
+      ImplicitShells::Operators result;
+      for (unsigned int c = 0; c < shells.size(); ++c)
+        {
+          ControlPoints force;
+          SparseMatrix  stiffness;
+          elasticity.force_and_tangent(state.capsules[c].x, force, stiffness, Tangent::positive);
+          result.push_back(implicit_shells.works_on(c) ? shells_[c].implicit_operator(choice, std::move(stiffness)) : ImplicitOperator());
+        }
+      return result;
+    };
+    if (choice.tangent == Tangent::exact)
+      implicit_shells.renew(std::move(operators), tau_, positive_ones);
+    else
+      implicit_shells.renew(std::move(operators), tau_);
   }
 
 

@@ -13,11 +13,12 @@ namespace tanktread
   NewtonSolver::distance_allowed(const Progress &progress) const
   {
     // Positions within a small part of a cell, which shrinks with the solver's tolerance, are as good as any. A node of the fluid that changes sides makes the
-    // residual jump, and now and
-    // then shell and node would chase each other for ever: then a larger part has to do.
-    constexpr unsigned int patience = 8;
-    const double           h        = level_.finest_cell();
-    return progress.n_moves < patience ? std::min(0.002 * h, 100. * parameters_.newton_tolerance) : 0.02 * h;
+    // residual jump, and now and then shell and node would chase each other for ever, since no shape agrees with either side: then larger parts have to do.
+    constexpr unsigned int patience = 8, more_patience = 10;
+    const double           h = level_.finest_cell();
+    if (progress.n_moves < patience)
+      return std::min(0.002 * h, 100. * parameters_.newton_tolerance);
+    return progress.n_moves < more_patience ? 0.02 * h : 0.06 * h;
   }
 
 

@@ -228,27 +228,6 @@ namespace tanktread
 
 
   void
-  NewtonSolver::use(const Tangent tangent)
-  {
-    memory_.tangent = tangent;
-    implicit_shells_.discard();
-  }
-
-
-  void
-  NewtonSolver::react(const std::string &failure, const bool renewed, Progress &progress)
-  {
-    if (!renewed)
-      implicit_shells_.discard(); // perhaps they were too old: the same iteration again, with new ones
-    else if (memory_.tangent == Tangent::exact)
-      use(Tangent::positive);
-    else
-      throw NumericalError(failure);
-    progress.cautious = memory_.tangent == Tangent::positive;
-  }
-
-
-  void
   NewtonSolver::iterate_to_solution(State &trial, const TimeStep &step, NewtonReport &report)
   {
     if (level_.has_viscosities())
@@ -268,8 +247,11 @@ namespace tanktread
           throw NumericalError("no convergence in " + std::to_string(report.newton_iterations) + " Newton iterations");
         if (trial_points() == Points::follow && !report.step_lengths.empty() && report.step_lengths.back() < 1.)
           level_.move_points(trial); // where a rejected trial has left it
-        if (progress.length < 0.25 * level_.finest_cell() && !progress.cautious && memory_.tangent == Tangent::positive)
-          use(Tangent::exact);
+        if (memory_.tangent == Tangent::positive && exact_may_serve(progress, report))
+          {
+            use(Tangent::exact);
+            progress.cautious = false;
+          }
         const unsigned int renewals = implicit_shells_.n_renewals();
         const std::string  failure  = iterate(trial, r, step, progress, report);
         if (!failure.empty() && progress.tolerable)
@@ -278,7 +260,7 @@ namespace tanktread
             return;
           }
         if (!failure.empty())
-          react(failure, implicit_shells_.n_renewals() > renewals, progress);
+          react(failure, implicit_shells_.n_renewals() > renewals, report.residuals.back(), progress);
         if (!progress.followed && follow_shells(trial, progress))
           {
             r                       = level_.residual(trial, step, trial_points());

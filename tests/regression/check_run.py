@@ -22,6 +22,7 @@ def arguments():
     parser.add_argument("--expect", action="append", default=[], metavar="COLUMN=VALUE,RELATIVE")
     parser.add_argument("--volume-error", type=float, default=1e-8)
     parser.add_argument("--time", type=float, help="time that the run has to reach")
+    parser.add_argument("--steps", type=int, help="number of steps that the run has to take: none of them halved")
     parser.add_argument("--keeps", action="append", default=[], metavar="COLUMN=RELATIVE", help="column that must stay within this of its first value")
     parser.add_argument("--varies", action="append", default=[], metavar="COLUMN", help="column that must not be the same in all rows")
     parser.add_argument("--contours", metavar="TIMES", help="times of the cuts in contours.csv, by commas")
@@ -56,6 +57,8 @@ def failures_of_history(args):
         yield f"volume error {largest}, allowed {args.volume_error}"
     if args.time is not None and not rows[-1]["time"] >= args.time * (1 - 1e-9):
         yield f"ended at time {rows[-1]['time']}, expected {args.time}"
+    if args.steps is not None and len(rows) != args.steps + 1:
+        yield f"{len(rows) - 1} steps, expected {args.steps}"
     for column in args.varies:
         if not largest_of(row[column] for row in rows) > min(row[column] for row in rows):
             yield f"{column} is {rows[0][column]} in all rows, or not a number in some"

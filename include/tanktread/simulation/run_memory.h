@@ -13,6 +13,7 @@
 #include <tanktread/surface/surface_geometry.h>
 
 #include <deque>
+#include <limits>
 #include <vector>
 
 namespace tanktread
@@ -35,6 +36,7 @@ namespace tanktread
     StepHistory       history;
     RestEnergy        energy;
     double            next_length;
+    double            shortest = std::numeric_limits<double>::infinity(); // length below which none is tried
     std::deque<Level> previous; // levels before the present one, newest first, two at most; their flows are on the present mesh
   };
 

@@ -35,7 +35,7 @@ namespace tanktread
   /**
    * Moves a State from one time level to the next. An implicit step that Newton's method does not solve is tried again from the last level instead of the
    * extrapolated
-   * guess, then with half its length; one whose shells overlap at its end, with half its length; one whose local error exceeds Time/Tolerance is repeated with
+   * guess, then along a path of shorter steps, then with half its length; one whose shells overlap at its end, with half its length; one whose local error exceeds Time/Tolerance is repeated with
    * a shorter length, and so is one in which the energy of the shells rises in a liquid at rest; lengths grow back by at most 1.5. Failed attempts are
    * said in the log.
    *
@@ -68,11 +68,11 @@ namespace tanktread
      * solved or the
      * explicit coupling is unstable.
      *
-     * @param mesh_is_new whether the mesh has just been made for this step: then steps whose shells end beyond its finest cells are shortened instead of
-     * reported.
+     * @param last_mesh whether no other mesh will be made for this step: then steps with shells beyond its finest cells, at their end or the end of a stage, are
+     * shortened instead of reported.
      */
     StepResult
-    step(State &state, double time, bool mesh_is_new);
+    step(State &state, double time, bool last_mesh);
 
     /** Positions of the shells at a time of the last step. */
     ShellFields
@@ -82,16 +82,33 @@ namespace tanktread
     }
 
   private:
+    /** With a tolerance, for the first step, whose error is not known: how long the shells take for a tenth of a at the speed that they themselves give the liquid at the start, root mean square. */
+    double
+    longest_start(const State &state) const;
     StepResult
-    implicit_step(State &state, double time, bool mesh_is_new);
+    implicit_step(State &state, double time, bool last_mesh);
     /** Levels with their times, newest first. */
     using Levels = std::deque<std::pair<double, const State *>>;
+    /** Where Newton's method starts from. */
+    enum class Start
+    {
+      extrapolation, // the levels before, continued in time
+      last,          // the last level or stage
+      continuation   // the same, by way of shorter steps
+    };
     /** One attempt at a step: sets `next` to the new level, or says in the log why not. With a stage beyond the finest cells, `next` is that stage. */
     NewtonReport
-    try_step(const State &state, double time, double length, bool from_extrapolation, State &next);
+    try_step(const State &state, double time, double length, Start from, State &next);
+    /**
+     * Solves a stage along a path: for growing s, up to 1, the problem with (1 - s) x + s xhat in place of xhat, x the positions of `start`, and with s tau.
+     * `start` solves it for s = 0. Each solution starts from the straight line through the last two; parts of the path that fail are halved, down to a
+     * sixteenth of the whole.
+     */
+    NewtonReport
+    continued(const State &start, const TimeStep &step, State &next);
     /** Solves the stages of a step as `history` has them, from guesses made of the stages before and of `levels`. The last one solved, or not solved, is in `next`. */
     NewtonReport
-    solve_stages(const StepHistory &history, const State &state, double time, double length, Levels levels, State &next);
+    solve_stages(const StepHistory &history, const State &state, double time, double length, Start from, Levels levels, State &next);
     /** Positions by SDIRK2 at the end of the first step of backward Euler, what they took in `result`; none in other steps, with Time/Tolerance > 0, or if they cannot be computed. */
     std::optional<ShellFields>
     first_step_by_second_order(const State &state, double time, double length, StepResult &result);
@@ -104,7 +121,7 @@ namespace tanktread
     /** What the velocities have moved in a stage: not what sets the volume right, which is done once for the whole step. */
     ShellFields
     displacement(const State &stage, const ShellFields &xhat) const;
-    /** Attempts from the extrapolated state and from the last one. Returns why they failed, or nothing. */
+    /** Attempts from the extrapolated state, from the last one, and by continuation, the first and the last of these at the first attempt only. Returns why they failed, or nothing. */
     std::string
     attempts(const State &state, double time, bool first_attempt, StepResult &result, State &next);
     /** Makes `next` the present state, if its local error allows it, and sets the length of the step to come. @param reference see first_step_by_second_order(), or empty. */
@@ -116,9 +133,9 @@ namespace tanktread
     {
       return points_along_ ? std::min(parameters_.step, PointsAlong::longest_step(scene_, state)) : parameters_.step;
     }
-    /** One stage: `next`, a guess, becomes its solution. */
+    /** One stage: `next`, a guess, becomes its solution. @param last the level or stage before, from which continuation starts. */
     NewtonReport
-    solve_stage(ShellSteps step, const FluidVector &uhat, double time, double length, State &next);
+    solve_stage(Start from, const State &last, ShellSteps step, const FluidVector &uhat, double time, double length, State &next);
     StepResult
     explicit_step(State &state, double time);
     void

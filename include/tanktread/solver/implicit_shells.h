@@ -10,6 +10,7 @@
 #include <tanktread/solver/shell_multigrid.h>
 #include <tanktread/solver/solver_memory.h>
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -25,7 +26,9 @@ namespace tanktread
    * K_pi = K - pi H_V of some linearisation.
    *
    * Any regular matrix would leave the solution of the system unchanged; this one makes it fast. S^{-1} is one V-cycle of ShellMultigrid where that converges,
-   * on the ranks of the capsule's team, and made anew for each linearisation. Where S is indefinite, and on control meshes that no
+   * on the ranks of the capsule's team, and made anew for each linearisation. Where S is indefinite, so that velocity() would measure residuals with an operator
+   * that may shorten or stretch them without bound, the positive tangent takes the place of K_pi in it. Where no V-cycle converges even so, and on control meshes
+   * that no
    * subdivision has made, it is LU factors, on the rank that owns the capsule: as they are dear, those of an earlier shape serve as long as the solver is
    * fast with them, which linear solves are watched for. All capsules' operators are renewed together.
    */
@@ -49,9 +52,15 @@ namespace tanktread
       return layout_.works_on(c);
     }
 
-    /** Replaces the operators, one for each capsule that this rank works on, empty ones for the others. Collective; throws NumericalError on all ranks when one is singular. */
+    using Operators = std::vector<ImplicitOperator>;
+
+    /**
+     * Replaces the operators, one for each capsule that this rank works on, empty ones for the others; by those that `definite` makes, if it is given, where a
+     * V-cycle shows that one of them is indefinite.
+     * Collective; throws NumericalError on all ranks when one is singular.
+     */
     void
-    renew(std::vector<ImplicitOperator> operators, double tau);
+    renew(Operators operators, double tau, const std::function<Operators()> &definite = {});
 
     /**
      * To be told about every linear solve with these operators. They are worn out when one takes more than 1.1 times the iterations that a decade took in the

@@ -156,7 +156,13 @@ namespace tanktread
     }
     /** The implicit operator for this linearisation. */
     ImplicitOperator
-    implicit_operator(const Linearisation &choice) const;
+    implicit_operator(const Linearisation &choice) const
+    {
+      return implicit_operator(choice, stiffness_);
+    }
+    /** The same with another matrix in place of K - pi H_V. */
+    ImplicitOperator
+    implicit_operator(const Linearisation &choice, SparseMatrix stiffness) const;
 
   private:
     /** Adds the multiple of A^{-1} v to `dx` that makes v . dx = -r_V. */
@@ -181,7 +187,7 @@ namespace tanktread
     /**
      * @param shells at the state's positions. @param velocities of the control points, J u + u_inf(x). @param velocity_gradients of u at the points of each
      * shell on this rank. @param implicit_shells are renewed unless they serve for
-     * tau; kept by reference, and not to be changed as long as this object is in use, as `coupling`.
+     * tau, with the positive tangent where the exact one makes them indefinite; kept by reference, and not to be changed as long as this object is in use, as `coupling`.
      *
      * Collective. Throws NumericalError when one of the matrices is singular.
      */

@@ -11,6 +11,7 @@
 #include <tanktread/solver/time_level.h>
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -54,8 +55,7 @@ namespace tanktread
      * iterations only, at the
      * linearisation, so that residuals compared in a line search are measured alike. An iteration that fails with old operators is done again with new ones.
      *
-     * Where the linear solver fails with the exact tangent, which may be indefinite, the positive one takes its place for the rest of the step, and until the
-     * solution of the next is near.
+     * Where an iteration fails with the exact tangent, which may be indefinite, the positive one takes its place, until the solution is so much nearer that the exact one deserves another try.
      *
      * Iterations whose displacement |r| tau is longer than a quarter of a cell freeze the points, the others use the complete derivative and converge
      * quadratically.
@@ -87,9 +87,10 @@ namespace tanktread
     /** How far a step has come, and what its next iteration is going to be like. */
     struct Progress
     {
-      double       length;            // about that of the next displacement
-      bool         cautious  = false; // after a failure with the positive tangent
-      unsigned int n_moves   = 1;     // of the points or the viscosity
+      double       length;                                              // about that of the next displacement
+      bool         cautious  = false;                                   // with the positive tangent after a failure
+      double       failed_at = std::numeric_limits<double>::infinity(); // residual at which the exact tangent failed last in this step
+      unsigned int n_moves   = 1;                                       // of the points or the viscosity
       bool         settled   = false; // the viscous part of the jumps: what a further sweep would change is small, or too many of them have been done already
       bool         followed  = false; // points, viscosity and jumps are those of the state after the last iteration
       bool         tolerable = false; // the tolerances are met
@@ -111,9 +112,12 @@ namespace tanktread
     /** An iteration from `state` and its residual `r`. Returns why it failed, or nothing. */
     std::string
     iterate(State &state, Residual &r, const TimeStep &step, Progress &progress, NewtonReport &report);
-    /** After a failure: a new implicit operator or another tangent for the next try. Throws NumericalError when there is none left. */
+    /** After a failure with this residual: a new implicit operator or another tangent for the next try. Throws NumericalError when there is none left. */
     void
-    react(const std::string &failure, bool renewed, Progress &progress);
+    react(const std::string &failure, bool renewed, double residual, Progress &progress);
+    /** With the positive tangent: whether the exact one deserves a try. */
+    bool
+    exact_may_serve(const Progress &progress, const NewtonReport &report) const;
     /**
      * With the enriched interface or another viscosity inside: moves points and viscosity after the shells unless they are close enough, so that no solution is
      * accepted with them elsewhere, and, unless settled, makes the viscous part of
