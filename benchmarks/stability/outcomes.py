@@ -87,7 +87,7 @@ def sentence(record, log):
 
 def counts(log):
     """(steps halved, steps repeated for their local error or on another mesh)."""
-    return len(re.findall(r"^Step of length \S+ (?:failed from the last|rejected:)", log, re.MULTILINE)), len(re.findall(r"^Step of length \S+ repeated", log, re.MULTILINE))
+    return len(re.findall(r"^Step of length \S+ halved", log, re.MULTILINE)), len(re.findall(r"^Step of length \S+ repeated", log, re.MULTILINE))
 
 
 def costs(table, record):

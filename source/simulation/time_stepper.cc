@@ -258,7 +258,10 @@ namespace tanktread
             log_.line("Step of length " + std::to_string(result.length) + " rejected: " + failure + '.');
           }
         if (!failure.empty())
-          result.length *= 0.5;
+          {
+            log_.line("Step of length " + std::to_string(result.length) + " halved.");
+            result.length *= 0.5;
+          }
         else if (accept_step(state, time, shortest, reference && result.length == wanted ? *reference : ShellFields(), next, result))
           return result;
         else

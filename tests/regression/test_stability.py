@@ -23,7 +23,7 @@ import outcomes  # noqa: E402
 
 NAMES = "time,D_xz,L,B,W,volume,area,membrane_energy,bending_energy,volume_error,detail_ratio,newton_iterations,linear_iterations,wall_time".split(",")
 WARNED = "WARNED from time 0.5 on: worst_gap came to 0.1 at time 1 (threshold 0.5).\n"
-HALVED = "Step of length 1 failed from the extrapolated state: no\nStep of length 1 failed from the last state: no\nStep of length 0.500000 rejected: outside.\nStep of length 0.25 repeated: its local error\n"
+HALVED = "Step of length 1 failed from the extrapolated state: no\nStep of length 1 failed from the last state: no\nStep of length 1.000000 halved.\nStep of length 0.500000 rejected: outside.\nStep of length 0.500000 halved.\nStep of length 0.25 repeated: its local error\n"
 SHEAR, REST = (next(map_ for map_ in maps.MAPS if map_.name == name) for name in ("viscosity_ratio", "schemes_relaxation"))
 
 

@@ -64,7 +64,8 @@ namespace tanktread
     refine_around(State &state, const std::vector<ShellFields> &others = {});
 
     /**
-     * One step from `time`, not beyond the end time. Throws NumericalError, with `state` as it was, when no length down to a thousandth of Time/Step can be
+     * One step from `time`, not beyond the end time. Throws NumericalError, with `state` as it was, when no length down to a thousandth of Time/Step, or
+     * to a twentieth of longest_start() if that is less, can be
      * solved or the
      * explicit coupling is unstable.
      *
