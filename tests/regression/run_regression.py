@@ -17,6 +17,7 @@ import sys
 
 NEVER = ("newton_iterations", "linear_iterations", "wall_time")
 ANGLES = ("theta", "theta_continuous", "alpha", "delta")  # of a section that is nearly round: not a number
+UNKNOWN = ("local_error", "energy_rise")  # of first steps, in flows: not a number
 COLUMNS = "time,D_xz,theta,L,B,W,volume,area,membrane_energy,bending_energy"
 
 
@@ -53,7 +54,7 @@ def select_columns(history, names, target):
     if missing:
         sys.exit(f"{history}: no rows, or no column {', '.join(missing)}")
     for row in rows:
-        wrong = [name for name in names if math.isnan(float(row[name])) and not (name in ANGLES and float(row.get("D_xz", 1)) < 1e-3)]
+        wrong = [name for name in names if math.isnan(float(row[name])) and name not in UNKNOWN and not (name in ANGLES and float(row.get("D_xz", 1)) < 1e-3)]
         if wrong:
             sys.exit(f"{history}: at time {row.get('time')} not a number: {', '.join(wrong)}")  # two runs that are equally wrong would agree
         if "theta" in row and abs(float(row.get("D_xz", 1))) < 1e-8:

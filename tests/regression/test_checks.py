@@ -32,7 +32,7 @@ class Folder(unittest.TestCase):
 class CheckRun(Folder):
     def failures(self, rows, **options):
         self.history(rows)
-        args = {"output": self.folder, "volume_error": 1e-8, "time": 1, "keeps": [], "varies": [], "contours": None, "expect": []}
+        args = {"output": self.folder, "volume_error": 1e-8, "time": 1, "steps": None, "keeps": [], "varies": [], "contours": None, "expect": []}
         return list(check_run.failures_of_history(argparse.Namespace(**{**args, **options})))
 
     def test_good_rows_pass(self):
@@ -41,6 +41,8 @@ class CheckRun(Folder):
     def test_numbers_that_are_wrong(self):
         self.assertTrue(self.failures([*GOOD[:2], "1,0.2,0.19,2,2e-8"]))
         self.assertTrue(self.failures(GOOD, time=1.1))
+        self.assertTrue(self.failures(GOOD, steps=3))
+        self.assertEqual(self.failures(GOOD, steps=2), [])
         self.assertTrue(self.failures(GOOD, keeps=["area=1e-5"]))
         self.assertTrue(self.failures([GOOD[1]] * 3, time=0.5, varies=["D_xz"]))
         self.assertTrue(self.failures(GOOD, expect=["D_xz=0.21,0.01"]))

@@ -86,6 +86,12 @@ namespace tanktread
     /** With a tolerance, for the first step, whose error is not known: how long the shells take for a tenth of a at the speed that they themselves give the liquid at the start, root mean square. */
     double
     longest_start(const State &state) const;
+    /** Time/Step, or less where control points move along the shells. */
+    double
+    longest_step(const State &state) const
+    {
+      return points_along_ ? std::min(parameters_.step, PointsAlong::longest_step(scene_, state)) : parameters_.step;
+    }
     StepResult
     implicit_step(State &state, double time, bool last_mesh);
     /** Levels with their times, newest first. */
@@ -107,6 +113,9 @@ namespace tanktread
      */
     NewtonReport
     continued(const State &start, const TimeStep &step, State &next);
+    /** One stage: `next`, a guess, becomes its solution. @param last the level or stage before, from which continuation starts. */
+    NewtonReport
+    solve_stage(Start from, const State &last, ShellSteps step, const FluidVector &uhat, double time, double length, State &next);
     /** Solves the stages of a step as `history` has them, from guesses made of the stages before and of `levels`. The last one solved, or not solved, is in `next`. */
     NewtonReport
     solve_stages(const StepHistory &history, const State &state, double time, double length, Start from, Levels levels, State &next);
@@ -128,15 +137,6 @@ namespace tanktread
     /** Makes `next` the present state, if its local error allows it, and sets the length of the step to come. @param reference see first_step_by_second_order(), or empty. */
     bool
     accept_step(State &state, double time, double shortest, const ShellFields &reference, State &next, StepResult &result);
-    /** Time/Step, or less where control points move along the shells. */
-    double
-    longest_step(const State &state) const
-    {
-      return points_along_ ? std::min(parameters_.step, PointsAlong::longest_step(scene_, state)) : parameters_.step;
-    }
-    /** One stage: `next`, a guess, becomes its solution. @param last the level or stage before, from which continuation starts. */
-    NewtonReport
-    solve_stage(Start from, const State &last, ShellSteps step, const FluidVector &uhat, double time, double length, State &next);
     StepResult
     explicit_step(State &state, double time);
     void
