@@ -54,8 +54,9 @@ def histories_of(folder):
 
 
 def warnings_in(log):
-    """Names of what the program has warned of, `worst_` left out; "too_coarse": what is set is so for the target."""
-    at_start = ["too_coarse"] if re.search(r"^WARNING: what the file sets is too coarse", log, re.MULTILINE) else []
+    """Names of what the program has warned of, `worst_` left out, and of what has no column: cells or control mesh that are too coarse for the target, too few points or steps to be judged."""
+    lines = {"too_coarse": "what the file sets is too coarse", "few_points": "a control mesh of", "unknown_steps": "the local error of none"}
+    at_start = [name for name, words in lines.items() if re.search(f"^WARNING: {words}", log, re.MULTILINE)]
     return at_start + list(dict.fromkeys(re.findall(r"^WARNED from time \S+ on: (?:worst_)?(\w+)", log, re.MULTILINE)))
 
 

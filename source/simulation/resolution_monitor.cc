@@ -88,6 +88,8 @@ namespace tanktread
     memory_.steps.add_step(step.step, step.local_error);
     of(figures, Concern::steps) = memory_.steps.sum;
     of(figures, Concern::rise)  = std::max(step.energy_rise, 0.); // or not a number
+    if (const std::string text = warning_of_few_points(context_); step.step == 0. && !text.empty())
+      log_.line(text);
     for (const std::string &text : update_warnings(memory_, step.time, figures, context_))
       log_.line(text);
   }
@@ -96,8 +98,8 @@ namespace tanktread
   void
   ResolutionMonitor::finish() const
   {
-    const std::string text = warnings_in_short(memory_, context_);
-    if (!text.empty())
-      log_.line("\n" + text);
+    for (const std::string &text : {warning_of_unknown_steps(memory_, context_), warnings_in_short(memory_, context_)})
+      if (!text.empty())
+        log_.line("\n" + text);
   }
 } // namespace tanktread

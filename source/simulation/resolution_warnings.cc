@@ -324,6 +324,27 @@ namespace tanktread
 
 
   std::string
+  warning_of_few_points(const ResolutionContext &context)
+  {
+    constexpr unsigned int enough = 100; // 162: meshes of 42 and 12 points are coarser ones of it
+    if (context.control_points >= enough)
+      return "";
+    return "WARNING: a control mesh of " + std::to_string(context.control_points) +
+      " points has no coarser ones to be judged by: wrinkles, and shapes that it cannot follow, are not noticed. Take Shell mesh/Level = 2 or more.";
+  }
+
+
+  std::string
+  warning_of_unknown_steps(const WarningMemory &memory, const ResolutionContext &context)
+  {
+    if (!context.steps_are_fixed || context.is_explicit || memory.energy.n_steps == 0 || !std::isnan(memory.steps.sum))
+      return "";
+    return "WARNING: the local error of none of the " + std::to_string(memory.energy.n_steps) +
+      " steps is known, which takes more of them than the order of Time/Scheme. Take Time/Tolerance > 0 or a shorter Time/Step.";
+  }
+
+
+  std::string
   warnings_before_failure(const WarningMemory &memory)
   {
     std::string names;

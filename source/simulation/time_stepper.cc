@@ -167,7 +167,7 @@ namespace tanktread
       {
         if (from == Start::extrapolation && (memory_.previous.empty() || !first_attempt))
           continue;
-        if (from == Start::continuation && !first_attempt)
+        if (from == Start::continuation && (parameters_.tolerance > 0. || !first_attempt)) // steps whose length is free are halved: that costs less
           continue;
         const NewtonReport report = try_step(state, time, result.length, from, next);
         result.newton_iterations += report.newton_iterations;

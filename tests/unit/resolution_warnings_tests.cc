@@ -176,3 +176,24 @@ TEST(StepErrorMemory, WhatIsOlderThanAUnitOfTimeFades)
     memory.add_step(0.01, 1e-5);
   EXPECT_NEAR(memory.sum, 1e-3, 1e-5);
 }
+
+
+TEST(ResolutionWarnings, WhatCannotBeJudgedIsSaid)
+{
+  ResolutionContext context;
+  WarningMemory     memory;
+  context.control_points = 42;
+  EXPECT_NE(warning_of_few_points(context).find("a control mesh of 42 points has no coarser ones"), std::string::npos);
+  context.control_points = 162;
+  EXPECT_EQ(warning_of_few_points(context), "");
+
+  context.steps_are_fixed = true;
+  EXPECT_EQ(warning_of_unknown_steps(memory, context), ""); // no steps
+  memory.energy.add_step(1., 0., 0.);
+  EXPECT_NE(warning_of_unknown_steps(memory, context).find("none of the 1 steps is known"), std::string::npos);
+  memory.steps.add_step(1., 1e-3);
+  EXPECT_EQ(warning_of_unknown_steps(memory, context), "");
+  memory.steps            = {};
+  context.steps_are_fixed = false;
+  EXPECT_EQ(warning_of_unknown_steps(memory, context), "");
+}

@@ -111,6 +111,14 @@ namespace tanktread
   std::string
   warnings_in_short(const WarningMemory &memory, const ResolutionContext &context);
 
+  /** What is said at the start of a run whose control mesh has too few points to be judged by a coarser one; empty if it has not. */
+  std::string
+  warning_of_few_points(const ResolutionContext &context);
+
+  /** What is said at the end of a run with fixed steps if the local error of none of them is known; empty if one is, or without steps. */
+  std::string
+  warning_of_unknown_steps(const WarningMemory &memory, const ResolutionContext &context);
+
   /** For the sentence that a failed run ends with: which warnings came before it, as the likely cause; empty without warnings. */
   std::string
   warnings_before_failure(const WarningMemory &memory);

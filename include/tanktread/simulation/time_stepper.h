@@ -131,7 +131,7 @@ namespace tanktread
     /** What the velocities have moved in a stage: not what sets the volume right, which is done once for the whole step. */
     ShellFields
     displacement(const State &stage, const ShellFields &xhat) const;
-    /** Attempts from the extrapolated state, from the last one, and by continuation, the first and the last of these at the first attempt only. Returns why they failed, or nothing. */
+    /** Attempts from the extrapolated state, from the last one, and by continuation, the first and the last of these at the first attempt only, the last with Time/Tolerance = 0 only. Returns why they failed, or nothing. */
     std::string
     attempts(const State &state, double time, bool first_attempt, StepResult &result, State &next);
     /** Makes `next` the present state, if its local error allows it, and sets the length of the step to come. @param reference see first_step_by_second_order(), or empty. */
