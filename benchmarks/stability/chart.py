@@ -48,7 +48,7 @@ def panel(axes, map_, rows):
                 axes.add_patch(pyplot.Rectangle((j, i), 1, 1, facecolor=COLOURS[row["outcome"]], edgecolor="white", linewidth=1))
                 axes.text(j + 0.5, i + 0.5, text_of(row), ha="center", va="center", fontsize=6, color="white" if row["outcome"] in ("wrong", "nan", "hang", "crash") else "#222222")
     axes.set(xlim=(0, len(columns)), ylim=(len(map_.rows), 0))
-    axes.set_xticks([j + 0.5 for j in range(len(columns))], [column.label for column in columns], fontsize=7)
+    axes.set_xticks([j + 0.5 for j in range(len(columns))], [column.label.replace(", ", "\n") for column in columns], fontsize=7 if len(columns[0].label) < 10 else 6)
     axes.set_yticks([i + 0.5 for i in range(len(map_.rows))], [row.label for row in map_.rows], fontsize=7)
     axes.set_xlabel(map_.across, fontsize=7.5, labelpad=1)
     axes.set_title(f"{map_.title} ({map_.down})", fontsize=8.5, pad=3)

@@ -37,7 +37,7 @@ def arguments():
     parser.add_argument("--quick", action="store_true", help="without the finest meshes and the smallest steps")
     parser.add_argument("--maps", default=",".join(names), help="maps to compute (default: all); the table has all that are there")
     parser.add_argument("--jobs", type=int, default=1, help="runs at a time (default 1)")
-    parser.add_argument("--limit", type=int, help="CPU seconds of a run (default: 60, with --quick 30)")
+    parser.add_argument("--limit", type=int, help="CPU seconds of a run (default: 200, with --quick 100)")
     parser.add_argument("--draw", action="store_true", help="compute nothing: chart and page of outcomes.csv, of output/stability or else of the repository")
     parser.add_argument("--doc", action="store_true", help="renew the page, the figure and the table of outcomes in the repository")
     parser.add_argument("--explicit-limit", action="store_true", help="the longest stable explicit step on a fine mesh, beside implicit steps (an hour): renews explicit_limit.csv first")
@@ -52,7 +52,7 @@ def arguments():
     args.program = args.build / "tanktread"
     if not args.draw and not args.program.is_file():
         parser.error(f"{args.program} is missing: build it (cmake --preset release && cmake --build --preset release) or name its folder with --build")
-    args.ranks, args.resume, args.cpu_limit = 1, False, args.limit or (30 if args.quick else 60)
+    args.ranks, args.resume, args.cpu_limit = 1, False, args.limit or (100 if args.quick else 200)
     return args
 
 
