@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <Eigen/Eigenvalues>
+#include <tanktread/base/counts.h>
 #include <tanktread/fluid/coarse_solver.h>
 #include <tanktread/fluid/quadratic_element.h>
 
@@ -138,7 +139,12 @@ namespace tanktread
     for (std::size_t i = 0; i < place_.size(); ++i)
       for (Eigen::Index c = 0; c < 3; ++c)
         values_[place_[i] + size * c] = src[4 * i + c];
-    MPI_Allreduce(MPI_IN_PLACE, values_.data(), values_.size(), sizeof(Number) == 4 ? MPI_FLOAT : MPI_DOUBLE, MPI_SUM, communicator_);
+    MPI_Allreduce(MPI_IN_PLACE,
+                  values_.data(),
+                  mpi_count(values_.size(), "numbers on the first rung"),
+                  sizeof(Number) == 4 ? MPI_FLOAT : MPI_DOUBLE,
+                  MPI_SUM,
+                  communicator_);
 
     // Each product transforms the index that runs fastest and, transposed, makes it the slowest: (x, y, z, c) -> (y, z, c, x) -> (z, c, x, y) -> (c, x, y, z).
     using Map   = Eigen::Map<const Matrix>;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: the vectors that flexible GMRES keeps.
 
+#include <tanktread/base/counts.h>
 #include <tanktread/base/target_clones.h>
 #include <tanktread/fluid/krylov_basis.h>
 
@@ -124,7 +125,7 @@ namespace tanktread
           for (std::size_t i = 0; i < n; ++i)
             sums[n_] += part[i] * part[i];
         });
-        MPI_Allreduce(MPI_IN_PLACE, sums.data(), int(sums.size()), MPI_DOUBLE, MPI_SUM, communicator_);
+        MPI_Allreduce(MPI_IN_PLACE, sums.data(), mpi_count(sums.size(), "scalar products"), MPI_DOUBLE, MPI_SUM, communicator_);
         for_chunks(vector, [&](double *const part, const std::size_t offset, const std::size_t n) {
           for (unsigned int i = 0; i < n_; ++i)
             add(-sums[i], v_[i].data() + offset, part, n);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: interpolation of velocities from one rung of the mesh to the next, and its transpose.
 
+#include <tanktread/base/counts.h>
 #include <tanktread/base/exceptions.h>
 #include <tanktread/fluid/cell_averages.h>
 #include <tanktread/fluid/level_transfer.h>
@@ -138,6 +139,7 @@ namespace tanktread
       sorted() const
       {
         InterpolationRows result;
+        index_count(entries_.size(), "entries of the interpolation between two fluid meshes");
         result.start.reserve(place_.size() + 1);
         result.node.reserve(entries_.size());
         result.weight.reserve(entries_.size());

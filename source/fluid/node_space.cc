@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <tanktread/base/counts.h>
 #include <tanktread/base/exceptions.h>
 #include <tanktread/fluid/node_numbering.h>
 #include <tanktread/fluid/node_space.h>
@@ -55,7 +56,7 @@ namespace tanktread
     first_constrained_ = n_owned_ + numbering.ghosts.size();
     row_start_         = std::move(numbering.row_start);
     masters_           = std::move(numbering.masters);
-    row_start_.push_back(masters_.size()); // the zero node
+    row_start_.push_back(index_count(masters_.size(), "masters of hanging nodes")); // the zero node
     n_local_ = first_constrained_ + row_start_.size() - 1;
     std::replace(cell_nodes_.begin(), cell_nodes_.end(), NodeNumbering::unknown, n_local_ - 1);
 

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <tanktread/base/counts.h>
 #include <tanktread/base/exceptions.h>
 #include <tanktread/base/target_clones.h>
 #include <tanktread/base/vector4.h>
@@ -207,7 +208,8 @@ namespace tanktread
     local_points_.clear();
     unit_.clear();
     cells_.clear();
-    for (unsigned int q = 0; q < points.size(); ++q)
+    const unsigned int n_points = index_count(points.size(), "points on the shells");
+    for (unsigned int q = 0; q < n_points; ++q)
       {
         const CellLocator::Location location = locator_.locate(points[q]);
         if (location.cell < 0)
@@ -285,7 +287,8 @@ namespace tanktread
   PointInterpolation::gradients(const FluidBlockVector &velocity, std::vector<double> &gradients) const
   {
     gradients.resize(9 * local_points_.size());
-    for_points(velocity, [&](const unsigned int r, const CellValues &u, const Shapes &shapes) { evaluate_gradient(u, shapes, nullptr, &gradients[9 * r]); });
+    for_points(velocity,
+               [&](const unsigned int r, const CellValues &u, const Shapes &shapes) { evaluate_gradient(u, shapes, nullptr, &gradients[9 * std::size_t(r)]); });
   }
 
 
@@ -306,8 +309,9 @@ namespace tanktread
   {
     values.resize(3 * local_points_.size());
     gradients.resize(9 * local_points_.size());
-    for_points(velocity,
-               [&](const unsigned int r, const CellValues &u, const Shapes &shapes) { evaluate_gradient(u, shapes, &values[3 * r], &gradients[9 * r]); });
+    for_points(velocity, [&](const unsigned int r, const CellValues &u, const Shapes &shapes) {
+      evaluate_gradient(u, shapes, &values[3 * std::size_t(r)], &gradients[9 * std::size_t(r)]);
+    });
   }
 
 
@@ -327,7 +331,7 @@ namespace tanktread
           integrate_all(unit_.data(), &order_[group.begin], group.end - group.begin, forces.data(), local);
         else
           for (unsigned int i = group.begin; i < group.end; ++i)
-            integrate(Shapes(unit_[order_[i]], inverse_size), &forces[3 * order_[i]], &moments[9 * order_[i]], local);
+            integrate(Shapes(unit_[order_[i]], inverse_size), &forces[3 * std::size_t(order_[i])], &moments[9 * std::size_t(order_[i])], local);
         scatter(nodes, group.cell, local, f.begin());
       }
     f.compress(dealii::VectorOperation::add);

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: Q2 velocity and Q1 pressure on one octree.
 
+#include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
 
 #include <tanktread/base/exceptions.h>
 #include <tanktread/fluid/compat.h>
+#include <tanktread/fluid/number_of_cells.h>
 #include <tanktread/fluid/taylor_hood_space.h>
 
 #include <algorithm>
@@ -34,6 +36,8 @@ namespace tanktread
     : fe_(degree)
     , dof_handler_(mesh.triangulation())
   {
+    // Added up here: deal.II's own sum has as few bits as what it is to be compared with.
+    check_number_of_cells(dealii::Utilities::MPI::sum(std::uint64_t(mesh.triangulation().n_locally_owned_active_cells()), mesh.communicator()));
     dof_handler_.distribute_dofs(fe_);
     const dealii::IndexSet owned    = dof_handler_.locally_owned_dofs();
     const dealii::IndexSet relevant = dealii::DoFTools::extract_locally_relevant_dofs(dof_handler_);

@@ -4,10 +4,11 @@
 """Takes the program's command line, FILE.prm --set Section/Parameter=value ..., and leaves a folder like one of its own.
 
 The scenes of benchmarks/flows get their reference solution, read off at other times, in the frame of the box, with D larger by the factor 1 + (4/side)^3;
-those of benchmarks/work_precision a capsule whose D and intrinsic viscosity are too large by a tenth of the square of the finest cell; the rest a capsule whose D goes to 0.3, wrong by a third of the target error; with a study there is a companion of four times the target and its table.
+those of benchmarks/work_precision a capsule whose D and intrinsic viscosity are too large by a tenth of the square of the finest cell; the rest a capsule whose D goes to 0.3, wrong by a third of the target error; that of benchmarks/scaling what its counting library leaves too; with a study there is a companion of four times the target and its table.
 """
 
 import math
+import os
 import pathlib
 import sys
 
@@ -83,6 +84,22 @@ def study(folder, target):
                                       "".join(f"{name},target,{value:g},{error:g},1,0,nan\n" for name, (value, error) in rows.items()))
 
 
+def counted(folder, capsules):
+    """Histories of so many capsules and what benchmarks/scaling/count_mpi.c leaves: on FAKE_RANKS ranks a step takes each 0.1 s N/P + 0.01 s N of processor time, 10 messages of 100 bytes, 5 calls of 8 bytes."""
+    ranks = int(os.environ.get("FAKE_RANKS", "1"))
+    rows = [{"time": 0.05 * i, "wall_time": 1 + 0.3 * i, "newton_iterations": 2 * (i > 0), "linear_iterations": 8 * (i > 0), "cells": 1400 * capsules} for i in range(9)]
+    names = ["history.csv"] if capsules == 1 else [f"history_{c + 1}.csv" for c in range(capsules)]
+    for name in names:
+        write(folder / name, COLUMNS, rows)
+    start = (folder / names[0]).stat().st_mtime - rows[-1]["wall_time"]
+    cpu = 0.1 * capsules / ranks + 0.01 * capsules
+    for rank in range(ranks):
+        counts = pathlib.Path(os.environ["TANKTREAD_COUNT_MPI"])
+        (counts / f"totals_{rank}.csv").write_text(f"# ranks: {ranks}\n# memory, KiB: {1024 * (200 + 10 * capsules)}\nkind,calls,bytes,cpu_seconds\nIsend,80,8000,0.1\nAllreduce,40,320,0.2\n")
+        lines = [f"{start + row['wall_time']:.6f},{cpu * i:.6f},{0.2 * i},{10 * i},{1000 * i},{5 * i},{40 * i}" for i, row in enumerate(rows)]
+        (counts / f"series_{rank}.csv").write_text("\n".join(["time,cpu,waiting,messages,bytes,sums,sum_bytes", *lines]) + "\n")
+
+
 def main():
     if sys.argv[1] in ("--print-parameters", "--version"):
         print(PARAMETERS if sys.argv[1] == "--print-parameters" else "Tanktread, a stand-in")
@@ -90,6 +107,8 @@ def main():
     settings = dict(word.split("=", 1) for word in sys.argv[2:] if word != "--set")
     prm, folder = pathlib.Path(sys.argv[1]), pathlib.Path(settings["Output/Directory"])
     folder.mkdir(parents=True, exist_ok=True)
+    if prm.stem == "scene":
+        return counted(folder, 1 + settings["Capsule/Centres"].count(";"))
     if prm.stem in REFERENCES:
         file = prm.parents[1] / f"reference/{REFERENCES[prm.stem]}_prestress0.05.csv"
         end = end_of(prm)

@@ -25,7 +25,7 @@ namespace tanktread
   class ScalarSpace
   {
   public:
-    /** Collective. Throws NumericalError if the ranks disagree about a constraint (a deal.II defect that would otherwise give wrong answers silently). */
+    /** Collective. Throws InputError for too many cells, NumericalError if ranks disagree about a constraint (deal.II's defect, silently wrong otherwise). */
     ScalarSpace(const FluidMesh &mesh, unsigned int degree, bool zero_on_prescribed_faces);
 
     const dealii::DoFHandler<3> &
