@@ -9,7 +9,10 @@ With N capsules on P ranks, a step and rank:
     bytes      of messages: k (N/P)^(2/3), the surface of a rank's part
     sums       s + t N + q min(P, N) calls of all ranks: some are made for each capsule, some by each rank with capsules
     sum bytes  u N + v
-A message takes latency + bytes / bandwidth, a call of all ranks log2(P) latencies and twice its bytes / bandwidth."""
+A message takes latency + bytes / bandwidth, a call of all ranks log2(P) latencies and twice its bytes / bandwidth.
+
+All but memory is fitted a linear iteration, so that more iterations are not taken for work that is not divided, and told for as many as the largest scene takes. Divided work is fitted to cells, which
+a capsule has more of in some scenes than in others."""
 
 import dataclasses
 import itertools
@@ -38,13 +41,14 @@ def fit(columns, values):
 
 @dataclasses.dataclass
 class Model:
-    """Coefficients, in the order of the module's text; `error`: largest relative error of the work in the cases that it was fitted to."""
+    """Coefficients, in the order of the module's text; `iterations`: linear ones a step; `error`: largest relative error of the work in the cases that it was fitted to."""
     work: np.ndarray
     memory: np.ndarray
     a_neighbour: float
     surface: float
     sums: np.ndarray
     sum_bytes: np.ndarray
+    iterations: float
     error: float
 
     def parts(self, capsules, ranks, latency=LATENCY, bandwidth=BANDWIDTH):
@@ -88,19 +92,27 @@ def numbers_of_sums(capsules, ranks):
 
 
 def of_rows(rows, fraction):
-    """The model of the cases with that volume fraction; None where there are too few."""
-    rows = [row for row in rows if row["state"] == "done" and abs(row["fraction"] - fraction) < 1e-9]
-    timed, several = [row for row in rows if not row["places"]], [row for row in rows if row["ranks"] > 1]
+    """The model of the cases, for that volume fraction; None where there are too few."""
+    rows = [row for row in rows if row["state"] == "done"]
+    timed, alike = [row for row in rows if not row["places"]], [row for row in rows if abs(row["fraction"] - fraction) < 1e-9]
+    several = [row for row in alike if row["ranks"] > 1]
     if len(timed) < 4 or len({row["ranks"] for row in timed}) < 2 or len(several) < 2:
         return None
-    columns, values = [shares(row["capsules"], row["ranks"]) for row in timed], [row["cpu_slowest"] for row in timed]
-    work = fit(columns, values)
-    memory = fit([shares(row["capsules"], row["ranks"]) for row in rows], [row["memory_largest"] for row in rows])
-    most = max(row["ranks"] for row in several)
-    return Model(work, memory, max(row["messages"] / min(row["ranks"] - 1, NEIGHBOURS) for row in several if row["ranks"] == most),
-                 float(np.median([row["bytes"] / (row["capsules"] / row["ranks"]) ** (2 / 3) for row in several])),
-                 fit([numbers_of_sums(row["capsules"], row["ranks"]) for row in several], [row["sums"] for row in several]),
-                 fit([[row["capsules"], 1] for row in several], [row["sum_bytes"] for row in several]), float(np.max(np.abs(np.array(columns) @ work / values - 1))))
+    largest, most = max(alike, key=lambda row: (row["capsules"], -row["places"])), max(row["ranks"] for row in several)
+    iterations, cells = largest["linear"], largest["cells"] / largest["capsules"]
+
+    def law(columns, chosen, name):
+        return fit([row["linear"] * np.asarray(columns(row)) for row in chosen], [row[name] for row in chosen]) * iterations
+
+    def work_columns(row):
+        return shares(row["cells"] / cells, row["ranks"]) * [1, 0, 0] + shares(row["capsules"], row["ranks"]) * [0, 1, 1]
+
+    work = law(work_columns, timed, "cpu_slowest")
+    errors = [abs(row["linear"] / iterations * work_columns(row) @ work / row["cpu_slowest"] - 1) for row in timed]
+    return Model(work, fit([shares(row["capsules"], row["ranks"]) for row in alike], [row["memory_largest"] for row in alike]),
+                 max(row["messages"] / row["linear"] * iterations / min(row["ranks"] - 1, NEIGHBOURS) for row in several if row["ranks"] == most),
+                 float(np.median([row["bytes"] / row["linear"] * iterations / (row["capsules"] / row["ranks"]) ** (2 / 3) for row in several])),
+                 law(lambda row: numbers_of_sums(row["capsules"], row["ranks"]), several, "sums"), law(lambda row: (row["capsules"], 1.), several, "sum_bytes"), iterations, max(errors))
 
 
 def limit(parts):

@@ -152,7 +152,7 @@ def of_model(rows, fraction):
         return "## Model\n\nToo few cases for one.\n"
     a, b, c = law.work
     text = (f"## Model: 16 to 4096 ranks\n\n**This is a model, not a measurement.** With N capsules on P ranks a step takes each rank {milliseconds(a)} ms × N/P + {milliseconds(b)} ms × N + {milliseconds(c)} ms "
-            f"outside of MPI (least squares of all cases of {100 * fraction:g} % that were timed, of which the worst differs by {100 * law.error:.0f} %): divided work, what every rank does for all capsules, the rest. It sends "
+            f"outside of MPI with {law.iterations:.3g} linear iterations (least squares of all cases that were timed, an iteration, of which the worst differs by {100 * law.error:.0f} %): divided work, what every rank does for all capsules, the rest. It sends "
             f"{law.a_neighbour:.3g} messages to each of its neighbours (as on the most ranks measured; all other ranks up to {model.NEIGHBOURS}), {size(law.surface)} × (N/P)^(2/3) in all, and takes part in "
             f"{law.sums[0]:.3g} + {law.sums[1]:.3g} N + {law.sums[2]:.3g} min(P, N) calls of all ranks, with {size(law.sum_bytes[0])} × N + {size(law.sum_bytes[1])}. A message costs {1e6 * model.LATENCY:g} μs and its bytes at "
             f"{model.BANDWIDTH / 1e9:g} GB/s of a rank; a call of all ranks log₂ P times that latency and twice its bytes. Memory of a rank: {law.memory[0]:.3g} MiB × N/P + {law.memory[1]:.3g} MiB × N + {law.memory[2]:.0f} MiB. "

@@ -180,7 +180,7 @@ class Figures(unittest.TestCase):
 class Model(unittest.TestCase):
     def rows(self):
         law = [(n, p, 0.1 * n / p + 0.01 * n + 0.02) for n, p in ((1, 1), (2, 1), (8, 1), (16, 1), (2, 2), (4, 4), (8, 4), (16, 4))]
-        return [{"state": "done", "fraction": 0.1, "places": 0, "capsules": n, "ranks": p, "cpu_slowest": cpu, "memory_largest": 150 + 20 * n / p + 3 * n, "messages": 100. * (p - 1),
+        return [{"state": "done", "fraction": 0.1, "places": 0, "capsules": n, "ranks": p, "linear": 8., "cells": 1400 * n, "cpu_slowest": cpu, "memory_largest": 150 + 20 * n / p + 3 * n, "messages": 100. * (p - 1),
                  "bytes": 1e6 * (n / p) ** (2 / 3), "sums": 50 + 9 * n + 3 * min(n, p), "sum_bytes": 1e5 * n + 500} for n, p, cpu in law]
 
     def test_laws_are_found(self):
@@ -201,6 +201,19 @@ class Model(unittest.TestCase):
         crossing = law.crossing_of_latency(1e-6)
         self.assertAlmostEqual(9e-6 * crossing * math.log2(crossing), 0.1, places=6)
         self.assertEqual([value for name, value in law.parts(8, 1).items() if "work" not in name], [0, 0, 0, 0])
+
+    def test_iterations_and_cells_are_not_taken_for_work_of_all_ranks(self):
+        rows = self.rows()
+        for i, row in enumerate(rows):
+            factor = 1 + 0.2 * (i % 3)
+            for name in ("linear", "cpu_slowest", "messages", "bytes", "sums", "sum_bytes"):
+                row[name] *= factor
+        dense = {**rows[-1], "fraction": 0.2, "cells": 2 * 1400 * 16, "linear": 8., "cpu_slowest": 0.1 * 16 * 2 / 4 + 0.01 * 16 + 0.02}
+        law = model.of_rows([*rows, dense], 0.1)
+        factor = law.iterations / 8
+        np.testing.assert_allclose(law.work, factor * np.array([0.1, 0.01, 0.02]), rtol=1e-6)
+        np.testing.assert_allclose(law.sums, factor * np.array([50, 9, 3]), rtol=1e-6)
+        self.assertLess(law.error, 1e-6)
 
     def test_no_coefficient_is_negative(self):
         np.testing.assert_allclose(model.fit([[1, 1], [2, 1], [4, 1]], [1, 3, 7])[1], 0, atol=1e-12)
