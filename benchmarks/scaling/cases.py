@@ -96,7 +96,8 @@ class Counted(run_scenes.Computation):
         (folder.parent / "load.txt").write_text(f"{os.getloadavg()[0]:.2f}\n")
         (counts / "program.txt").write_text(identity(pathlib.Path(self.program)))
         yields = self.launcher == LAUNCHER and self.ranks > len(os.sched_getaffinity(0))  # more ranks than cores: those that wait let others compute
-        words = ["env", *(["OMPI_MCA_mpi_yield_when_idle=1"] if yields else []), f"LD_PRELOAD={self.library}", f"TANKTREAD_COUNT_MPI={counts}", f"TANKTREAD_COUNT_PLACES={int(self.case.places)}", self.program, str(run.prm)]
+        counting = [f"LD_PRELOAD={self.library}", f"TANKTREAD_COUNT_MPI={counts}", f"TANKTREAD_COUNT_PLACES={int(self.case.places)}"]
+        words = ["env", *(["OMPI_MCA_mpi_yield_when_idle=1"] if yields else []), *counting, self.program, str(run.prm)]
         for name, value in {**settings, "Output/Directory": str(folder)}.items():
             words += ["--set", f"{name}={value}"]
         return ([] if self.ranks == 1 and self.launcher == LAUNCHER else shlex.split(self.launcher.format(ranks=self.ranks))) + words
@@ -119,7 +120,7 @@ def build_library(output):
 def compute(args, wanted):
     """Runs those of the cases that are not there; a run that fails does not stop the others."""
     library, run = build_library(args.output), run_of(args.output)
-    left = [case for case in wanted if not (args.resume and run.is_finished(case.name, settings(case)))]
+    left = [case for case in wanted if not (args.resume and run.is_finished(case.name, settings(case)) and (not case.places or is_of(args, case)))]
     for i, case in enumerate(left):
         Counted(args, case, library).compute(f"[{i + 1}/{len(left)}] {case.name}", run, case.name, settings(case))
 
@@ -128,3 +129,8 @@ def identity(program):
     """Of a program: addresses are those of one build alone."""
     state = program.stat()
     return f"{state.st_size} bytes, {state.st_mtime_ns}"
+
+
+def is_of(args, case):
+    """Whether a case has been counted with the program that is there now."""
+    return (run_of(args.output).folder(case.name).parent / "counts/program.txt").read_text() == identity(args.program)

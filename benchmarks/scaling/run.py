@@ -60,10 +60,12 @@ def arguments():
 
 
 def measure(args, series):
-    """Makes the runs; both tables."""
+    """Makes the runs; both tables, of what is there when they are interrupted."""
     names = args.names or list(cases.SERIES)
-    cases.compute(args, list(dict.fromkeys(case for name in names for case in series[name])))
-    points.write(args, series)
+    try:
+        cases.compute(args, list(dict.fromkeys(case for name in names for case in series[name])))
+    finally:
+        points.write(args, series)
 
 
 def main():
