@@ -112,7 +112,7 @@ def build_library(output):
     output.mkdir(parents=True, exist_ok=True)
     library = output / "libcount_mpi.so"
     source = HERE / "count_mpi.c"
-    if not library.is_file() or library.stat().st_mtime < source.stat().st_mtime:
+    if not library.is_file() or library.stat().st_mtime < max(file.stat().st_mtime for file in (source, HERE / "counted_calls.h")):
         subprocess.run(["mpicc", "-O2", "-shared", "-fPIC", "-o", str(library), str(source)], check=True)
     return library
 

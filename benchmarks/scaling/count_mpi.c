@@ -2,14 +2,17 @@
 // Part of Tanktread: counts what a program says to MPI, and the processor time that it spends outside of it.
 
 /*
- * A library to be loaded before the program (LD_PRELOAD), which stands between it and MPI by the profiling interface. At MPI_Finalize each rank writes into the folder named by TANKTREAD_COUNT_MPI
+ * A library to be loaded before the program (LD_PRELOAD), which stands between it and MPI by the profiling interface. At MPI_Finalize each rank writes into the
+ * folder named by TANKTREAD_COUNT_MPI
  *
- *   totals_<rank>.csv   kind,calls,bytes,cpu_seconds: of each MPI function that is counted; bytes are those that this rank hands over, cpu_seconds processor time within the call (polling included);
- *                       then lines "# key: value": ranks, processor seconds of the whole process, largest resident memory
- *   series_<rank>.csv   the same sums at many times: time (s since 1970), cpu (s, outside MPI), waiting (s, within), messages, bytes, sums (collective calls), sum_bytes
- *   places_<rank>.csv   only with TANKTREAD_COUNT_PLACES=1: kind,calls,bytes and return addresses within the program, innermost first, less its base: for addr2line. Costs some microseconds a call.
+ *   totals_<rank>.csv   kind,calls,bytes,cpu_seconds: of each MPI function that is counted; bytes are those that this rank hands over, cpu_seconds processor
+ *                       time within the call (polling included); before them lines "# key: value": ranks, processor seconds of the process, largest memory
+ *   series_<rank>.csv   the same sums at many times: time (s since 1970), cpu (s, outside MPI), waiting (s, within), messages, bytes, sums (calls of all
+ *                       ranks), sum_bytes
+ *   places_<rank>.csv   only with TANKTREAD_COUNT_PLACES=1: kind,calls,bytes and return addresses within the program, innermost first, less its base: for
+ *                       addr2line. Costs some microseconds a call.
  *
- * One thread a rank calls MPI. Calls that do not return to a thread of their own count once each; MPI_Test and MPI_Iprobe are not counted.
+ * One thread a rank calls MPI. MPI_Test and MPI_Iprobe are not counted: a program that polls by them seems to work.
  */
 
 #define _GNU_SOURCE
@@ -242,98 +245,7 @@ n_ranks(MPI_Comm communicator)
     return end(kind, start, PMPI_##name arguments);             \
   }
 
-COUNTED(Isend,
-        ISEND,
-        size_of(n, type),
-        (const void *data, int n, MPI_Datatype type, int to, int tag, MPI_Comm comm, MPI_Request *request),
-        (data, n, type, to, tag, comm, request))
-COUNTED(Issend,
-        ISSEND,
-        size_of(n, type),
-        (const void *data, int n, MPI_Datatype type, int to, int tag, MPI_Comm comm, MPI_Request *request),
-        (data, n, type, to, tag, comm, request))
-COUNTED(Send, SEND, size_of(n, type), (const void *data, int n, MPI_Datatype type, int to, int tag, MPI_Comm comm), (data, n, type, to, tag, comm))
-COUNTED(
-  Sendrecv,
-  SENDRECV,
-  size_of(n, type),
-  (const void *data, int n, MPI_Datatype type, int to, int tag, void *in, int m, MPI_Datatype in_type, int from, int in_tag, MPI_Comm comm, MPI_Status *status),
-  (data, n, type, to, tag, in, m, in_type, from, in_tag, comm, status))
-COUNTED(Allreduce, ALLREDUCE, size_of(n, type), (const void *in, void *out, int n, MPI_Datatype type, MPI_Op op, MPI_Comm comm), (in, out, n, type, op, comm))
-COUNTED(Iallreduce,
-        IALLREDUCE,
-        size_of(n, type),
-        (const void *in, void *out, int n, MPI_Datatype type, MPI_Op op, MPI_Comm comm, MPI_Request *request),
-        (in, out, n, type, op, comm, request))
-COUNTED(Reduce,
-        REDUCE,
-        size_of(n, type),
-        (const void *in, void *out, int n, MPI_Datatype type, MPI_Op op, int root, MPI_Comm comm),
-        (in, out, n, type, op, root, comm))
-COUNTED(Bcast, BCAST, size_of(n, type), (void *data, int n, MPI_Datatype type, int root, MPI_Comm comm), (data, n, type, root, comm))
-COUNTED(Exscan, EXSCAN, size_of(n, type), (const void *in, void *out, int n, MPI_Datatype type, MPI_Op op, MPI_Comm comm), (in, out, n, type, op, comm))
-COUNTED(Scan, SCAN, size_of(n, type), (const void *in, void *out, int n, MPI_Datatype type, MPI_Op op, MPI_Comm comm), (in, out, n, type, op, comm))
-COUNTED(Allgather,
-        ALLGATHER,
-        in == MPI_IN_PLACE ? size_of(m, out_type) : size_of(n, type),
-        (const void *in, int n, MPI_Datatype type, void *out, int m, MPI_Datatype out_type, MPI_Comm comm),
-        (in, n, type, out, m, out_type, comm))
-COUNTED(Allgatherv,
-        ALLGATHERV,
-        in == MPI_IN_PLACE ? size_of(counts[rank_in(comm)], out_type) : size_of(n, type),
-        (const void *in, int n, MPI_Datatype type, void *out, const int *counts, const int *starts, MPI_Datatype out_type, MPI_Comm comm),
-        (in, n, type, out, counts, starts, out_type, comm))
-COUNTED(Alltoall,
-        ALLTOALL,
-        (in == MPI_IN_PLACE ? size_of(m, out_type) : size_of(n, type)) * n_ranks(comm),
-        (const void *in, int n, MPI_Datatype type, void *out, int m, MPI_Datatype out_type, MPI_Comm comm),
-        (in, n, type, out, m, out_type, comm))
-COUNTED(Alltoallv,
-        ALLTOALLV,
-        in == MPI_IN_PLACE ? size_of(sum_of(out_counts, comm), out_type) : size_of(sum_of(counts, comm), type),
-        (const void  *in,
-         const int   *counts,
-         const int   *starts,
-         MPI_Datatype type,
-         void        *out,
-         const int   *out_counts,
-         const int   *out_starts,
-         MPI_Datatype out_type,
-         MPI_Comm     comm),
-        (in, counts, starts, type, out, out_counts, out_starts, out_type, comm))
-COUNTED(Gather,
-        GATHER,
-        in == MPI_IN_PLACE ? size_of(m, out_type) : size_of(n, type),
-        (const void *in, int n, MPI_Datatype type, void *out, int m, MPI_Datatype out_type, int root, MPI_Comm comm),
-        (in, n, type, out, m, out_type, root, comm))
-COUNTED(Gatherv,
-        GATHERV,
-        in == MPI_IN_PLACE ? size_of(counts[root], out_type) : size_of(n, type),
-        (const void *in, int n, MPI_Datatype type, void *out, const int *counts, const int *starts, MPI_Datatype out_type, int root, MPI_Comm comm),
-        (in, n, type, out, counts, starts, out_type, root, comm))
-COUNTED(Scatter,
-        SCATTER,
-        rank_in(comm) == root ? size_of(n, type) * n_ranks(comm) : 0.,
-        (const void *in, int n, MPI_Datatype type, void *out, int m, MPI_Datatype out_type, int root, MPI_Comm comm),
-        (in, n, type, out, m, out_type, root, comm))
-COUNTED(Scatterv,
-        SCATTERV,
-        rank_in(comm) == root ? size_of(sum_of(counts, comm), type) : 0.,
-        (const void *in, const int *counts, const int *starts, MPI_Datatype type, void *out, int m, MPI_Datatype out_type, int root, MPI_Comm comm),
-        (in, counts, starts, type, out, m, out_type, root, comm))
-COUNTED(Reduce_scatter,
-        REDUCE_SCATTER,
-        size_of(sum_of(counts, comm), type),
-        (const void *in, void *out, const int *counts, MPI_Datatype type, MPI_Op op, MPI_Comm comm),
-        (in, out, counts, type, op, comm))
-COUNTED(Barrier, BARRIER, 0., (MPI_Comm comm), (comm))
-COUNTED(Ibarrier, IBARRIER, 0., (MPI_Comm comm, MPI_Request *request), (comm, request))
-COUNTED(Wait, WAIT, 0., (MPI_Request * request, MPI_Status *status), (request, status))
-COUNTED(Waitall, WAITALL, 0., (int n, MPI_Request *requests, MPI_Status *statuses), (n, requests, statuses))
-COUNTED(Waitsome, WAITSOME, 0., (int n, MPI_Request *requests, int *n_done, int *done, MPI_Status *statuses), (n, requests, n_done, done, statuses))
-COUNTED(Waitany, WAITANY, 0., (int n, MPI_Request *requests, int *done, MPI_Status *status), (n, requests, done, status))
-COUNTED(Recv, RECV, 0., (void *data, int n, MPI_Datatype type, int from, int tag, MPI_Comm comm, MPI_Status *status), (data, n, type, from, tag, comm, status))
-COUNTED(Probe, PROBE, 0., (int from, int tag, MPI_Comm comm, MPI_Status *status), (from, tag, comm, status))
+#include "counted_calls.h"
 
 // ------------------------------------------------------------------------------------------------------------------------------ start and end
 static void

@@ -9,8 +9,8 @@
 namespace tanktread
 {
   /**
-   * Throws InputError for more cells in all than have nodes, 27 each, that this build of deal.II can count: 159072862 with Debian's 32 bits, beyond which numbers
-   * of nodes might begin again at zero. NodeSpace allows fewer, but has to have been given a right number of nodes to say so. Not collective.
+   * Throws InputError for more cells in all than have nodes, 27 each, that this build of deal.II can count: 159072862 with 32 bits as in Debian, beyond which
+   * their numbers might begin again at zero. NodeSpace allows fewer, but has to have been given a right number of nodes to say so. Not collective.
    */
   void
   check_number_of_cells(std::uint64_t n_cells);
