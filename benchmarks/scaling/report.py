@@ -30,6 +30,8 @@ Capsules lie on a lattice of those cubes, each moved a little out of the middle.
   neighbours do to caches and clock stays in them, and polling by `MPI_Test` and `MPI_Iprobe`, which only new meshes do.
 - **Wall s** says little on a machine that does something else besides, and nothing with more ranks than cores.
 - **Efficiency of the work** is that of CPU s alone: what would be left with messages that cost nothing.
+
+What is computed does not depend on the number of ranks: histories of four capsules, two of them across a periodic face, agree to 10⁻⁹ on 1 to 8 ranks, and where ranks have no cells (tests `run/ranks_agree_*`).
 """
 
 
