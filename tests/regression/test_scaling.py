@@ -102,10 +102,10 @@ SAID = """0x00000000000001a0
 dealii::sum(double)
 /usr/include/deal.II/mpi.h:12
 tanktread::NodeSpace::update<double>(double*) const
-/work/build/../source/fluid/node_space.cc:179 (discriminator 2)
+/home/build/../source/fluid/node_space.cc:179 (discriminator 2)
 0x00000000000001b0
 tanktread::LinearReport tanktread::solve_fgmres<tanktread::MonolithicOperator, tanktread::MonolithicPreconditioner>(int)
-/work/include/tanktread/fluid/linear_solver.h:68
+/home/include/tanktread/fluid/linear_solver.h:68
 """
 
 
