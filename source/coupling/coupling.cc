@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 
 namespace tanktread
@@ -56,7 +57,12 @@ namespace tanktread
     normal_forces_.resize(3 * interpolation_->local_points().size());
     for (const ShellTransfer &transfer : transfers_)
       transfer.set_point_forces(transfer.shell().normal_field(), normal_forces_);
-    jumps_->move(transfers_, *interpolation_);
+    std::vector<unsigned int> numbers(n_capsules());
+    std::vector<ShellBox>     boxes;
+    std::iota(numbers.begin(), numbers.end(), 0);
+    for (const auto &shell : shells)
+      boxes.push_back(shell_box(shell->points()));
+    jumps_->move(transfers_, numbers, boxes, *interpolation_);
     moved_ = true;
   }
 
@@ -275,14 +281,13 @@ namespace tanktread
 
 
   void
-  Coupling::carry_pressure(const ShellFields &f, const std::vector<VertexSides *> &sides, FluidBlockVector &fields) const
+  Coupling::carry_pressure(const ShellFields &f, VertexSides &sides, FluidBlockVector &fields) const
   {
     if (jumps_->are_none() || !moved_)
       return;
     ExtendedForces forces;
     extend_whole(density(f), forces);
-    for (unsigned int c = 0; c < n_capsules(); ++c)
-      jumps_->carry_pressure(c, forces, *sides[c], fields);
+    jumps_->carry_pressure(forces, sides, fields);
   }
 
 

@@ -3,34 +3,48 @@
 
 #include <tanktread/coupling/interface_quality.h>
 
-#include <array>
-#include <vector>
-
 namespace tanktread
 {
-  InterfaceQuality
-  interface_quality(const JumpEnrichment &shell, const MPI_Comm communicator)
+  namespace
   {
-    const VertexAverages &averages = shell.averages();
-    std::vector<char>     has_jumps(averages.groups().size(), 0);
-    for (const JumpEnrichment::CutCell &cut : shell.cut_cells())
-      if (cut.group != VertexAverages::no_points)
-        has_jumps[cut.group] = 1;
-    std::vector<double> areas(3, 0.); // all, without jumps, folded
-    for (std::size_t g = 0; g < has_jumps.size(); ++g)
-      {
-        Vector4 sum;
-        double  area = 0.;
-        for (unsigned int i = averages.groups()[g].begin; i < averages.groups()[g].end; ++i)
-          {
-            area += averages.area(i);
-            sum += averages.area(i) * averages.normal(i);
-          }
-        areas[0] += area;
-        areas[1] += has_jumps[g] ? 0. : area;
-        areas[2] += sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2] < 0.25 * area * area ? area : 0.;
-      }
+    /** Areas of the shells of a colour on this rank: all of it, without jumps and folded, three numbers each by the shells' numbers. */
+    void
+    add_areas(const JumpEnrichment &colour, std::vector<double> &areas)
+    {
+      const VertexAverages &averages = colour.averages();
+      std::vector<char>     has_jumps(averages.groups().size(), 0);
+      for (const JumpEnrichment::CutCell &cut : colour.cut_cells())
+        if (cut.group != VertexAverages::no_points)
+          has_jumps[cut.group] = 1;
+      for (std::size_t g = 0; g < has_jumps.size(); ++g)
+        {
+          Vector4 sum;
+          double  area = 0.;
+          for (unsigned int i = averages.groups()[g].begin; i < averages.groups()[g].end; ++i)
+            {
+              area += averages.area(i);
+              sum += averages.area(i) * averages.normal(i);
+            }
+          double *const of_shell = &areas[3 * std::size_t(averages.shells()[averages.groups()[g].shell].number)];
+          of_shell[0] += area;
+          of_shell[1] += has_jumps[g] ? 0. : area;
+          of_shell[2] += sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2] < 0.25 * area * area ? area : 0.;
+        }
+    }
+  } // namespace
+
+
+  std::vector<InterfaceQuality>
+  interface_quality(const ShellJumps &jumps, const MPI_Comm communicator)
+  {
+    std::vector<double> areas(3 * std::size_t(jumps.n_shells()), 0.);
+    for (const JumpEnrichment &colour : jumps.colours())
+      add_areas(colour, areas);
     dealii::Utilities::MPI::sum(areas, communicator, areas);
-    return areas[0] > 0. ? InterfaceQuality{areas[1] / areas[0], areas[2] / areas[0]} : InterfaceQuality();
+    std::vector<InterfaceQuality> result(jumps.n_shells());
+    for (std::size_t c = 0; c < result.size(); ++c)
+      if (const double *const of_shell = &areas[3 * c]; of_shell[0] > 0.)
+        result[c] = {of_shell[1] / of_shell[0], of_shell[2] / of_shell[0]};
+    return result;
   }
 } // namespace tanktread

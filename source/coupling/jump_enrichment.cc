@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Part of Tanktread: the kink of the velocity and the jump of the pressure at one shell, in the cells that it cuts.
+// Part of Tanktread: the kink of the velocity and the jump of the pressure at shells that are far from each other, in the cells that they cut.
 
 #include <deal.II/base/mpi.h>
 
@@ -7,7 +7,7 @@
 #include <tanktread/coupling/jump_enrichment.h>
 
 #include <algorithm>
-#include <cmath>
+#include <stdexcept>
 #include <utility>
 
 namespace tanktread
@@ -58,10 +58,13 @@ namespace tanktread
   } // namespace
 
 
-  JumpEnrichment::JumpEnrichment(const TaylorHoodSpace &space, std::shared_ptr<const NodeSpace> vertices, const ViscosityContrast &contrast)
+  JumpEnrichment::JumpEnrichment(const TaylorHoodSpace             &space,
+                                 std::shared_ptr<const NodeSpace>   vertices,
+                                 std::shared_ptr<const CellLocator> locator,
+                                 const ViscosityContrast           &contrast)
     : space_(space)
     , contrast_(contrast)
-    , locator_(space.mesh)
+    , locator_(std::move(locator))
     , averages_(std::move(vertices))
   {
     if (contrast_.ratio != 1.)
@@ -73,54 +76,34 @@ namespace tanktread
 
 
   void
-  JumpEnrichment::move(const ShellConfiguration &shell, const PointInterpolation &points, const PointRange &range, const unsigned int first)
+  JumpEnrichment::move(std::vector<LocatedShell> shells, const PointInterpolation &points)
   {
-    averages_.move(shell, points, range, first);
+    averages_.move(std::move(shells), points);
     psi_.assign(averages_.n_points(), {});
-    find_cut_cells(SurfaceDistance(space_.mesh, shell.patches()));
-    mean_gradients_.clear();
-    if (contrast_.ratio != 1.)
-      set_mean_gradients(shell.patches(), points, first);
-  }
-
-
-  void
-  JumpEnrichment::set_mean_gradients(const std::vector<QuadraticPatch> &patches, const PointInterpolation &points, const unsigned int first)
-  {
-    static const NodeDistances   uncut{}; // a cell with no node on the other side has no psi
-    std::vector<const CutCell *> cut_cell(averages_.groups().size(), nullptr);
-    for (const CutCell &cut : cut_cells_)
-      if (cut.group != VertexAverages::no_points)
-        cut_cell[cut.group] = &cut;
-    mean_gradients_.reserve(averages_.n_points());
-    for (unsigned int k = 0; k < averages_.groups().size(); ++k)
-      {
-        const VertexAverages::Group &group = averages_.groups()[k];
-        const NodeDistances         &nodes = cut_cell[k] != nullptr ? cut_cell[k]->nodes : uncut;
-        const NodeAmplitudes         q     = node_amplitudes(nodes, contrast_.ratio);
-        for (unsigned int i = group.begin; i < group.end; ++i)
-          mean_gradients_.emplace_back(nodes,
-                                       q,
-                                       averages_.unit_position(i),
-                                       space_.velocity->cell_sizes()[group.cell],
-                                       patches[points.local_points()[averages_.point(i)] - first]);
-      }
-  }
-
-
-  void
-  JumpEnrichment::find_cut_cells(const SurfaceDistance &distance)
-  {
-    const FluidMesh     &mesh = space_.mesh;
-    const NodeSpace     &u    = *space_.velocity;
-    const double         h    = mesh.cell_size(mesh.finest_level());
-    std::vector<double>  phi(u.n_local(), std::nan(""));
-    std::vector<Lattice> image_of(u.n_local()); // node of the lattice that phi is known for
-    unsigned int         n_conflicts = 0;
     cut_cells_.clear();
     transposed_.clear();
     nearby_cells_.clear();
     n_coarse_cut_cells_ = 0;
+    NearNodes known;
+    Conflicts conflicts;
+    for (const LocatedShell &shell : averages_.shells())
+      find_cut_cells(SurfaceDistance(space_.mesh, shell.shell->patches()), shell.number, known, conflicts);
+    near_vertices_ = find_near_vertices(averages_.vertices(), nearby_cells_);
+    conflicts.shells += averages_.n_meetings();
+    for (const NearVertex &vertex : near_vertices_)
+      conflicts.shells += vertex.sees_two;
+    refuse(conflicts);
+    mean_gradients_.clear();
+    if (contrast_.ratio != 1.)
+      set_mean_gradients(points);
+  }
+
+
+  void
+  JumpEnrichment::find_cut_cells(const SurfaceDistance &distance, const unsigned int shell, NearNodes &known, Conflicts &conflicts)
+  {
+    const FluidMesh &mesh = space_.mesh;
+    const double     h    = mesh.cell_size(mesh.finest_level());
     for (const Lattice &position : distance.cells_nearby())
       {
         dealii::Point<3> centre;
@@ -128,46 +111,62 @@ namespace tanktread
           centre[d] = mesh.box().lower(d) + h * (position[d] + 0.5);
         if (!mesh.box().contains(centre))
           continue;
-        const int cell = locator_.locate(centre).cell;
+        const int cell = locator_->locate(centre).cell;
         if (cell < 0)
           continue;
-        if (u.cell_sizes()[cell] > 1.5 * h)
+        if (space_.velocity->cell_sizes()[cell] > 1.5 * h)
           {
             n_coarse_cut_cells_ += is_cut(distance, position);
             continue;
           }
-        const unsigned int *const nodes    = u.cell_nodes(cell);
-        unsigned int              n_inside = 0;
-        NodeDistances             distances;
-        for (int a = 0; a < 27; ++a)
-          {
-            const Lattice node  = node_of_cell(position, a);
-            double       &value = phi[nodes[a]];
-            const bool    fixed = nodes[a] + 1 == u.n_local(); // the last place is that of all nodes on faces with prescribed velocity
-            if (std::isnan(value) || fixed)
-              {
-                value              = distance.at(node);
-                image_of[nodes[a]] = node;
-              }
-            else if (image_of[nodes[a]] != node)
-              ++n_conflicts;
-            distances.phi[a]    = value;
-            distances.inside[a] = value < 0.;
-            n_inside += distances.inside[a];
-          }
-        nearby_cells_.push_back(cell);
+        const NodeDistances nodes = node_distances(distance, shell, position, cell, known, conflicts);
+        nearby_cells_.push_back({static_cast<unsigned int>(cell), shell, {}});
+        for (unsigned int j = 0; j < 8; ++j)
+          nearby_cells_.back().inside[j] = nodes.inside[node_of_vertex(j)];
+        const auto n_inside = std::count(nodes.inside.begin(), nodes.inside.end(), true);
         if (n_inside > 0 && n_inside < 27)
-          add_cut_cell(cell, centre, distances);
+          add_cut_cell(cell, centre, nodes);
       }
-    refuse_own_image(n_conflicts);
-    sides_ = vertex_sides(space_, nearby_cells_, phi);
+  }
+
+
+  NodeDistances
+  JumpEnrichment::node_distances(const SurfaceDistance &distance,
+                                 const unsigned int     shell,
+                                 const Lattice         &position,
+                                 const unsigned int     cell,
+                                 NearNodes             &known,
+                                 Conflicts             &conflicts) const
+  {
+    const NodeSpace          &u     = *space_.velocity;
+    const unsigned int *const nodes = u.cell_nodes(cell);
+    NodeDistances             result;
+    for (int a = 0; a < 27; ++a)
+      {
+        const Lattice node         = node_of_cell(position, a);
+        const auto [found, is_new] = known.try_emplace(nodes[a]);
+        NearNode &near             = found->second;
+        if (is_new || nodes[a] + 1 == u.n_local()) // the last place is that of all nodes on faces with prescribed velocity
+          near = {distance.at(node), node, shell};
+        else if (near.shell != shell)
+          ++conflicts.shells;
+        else if (near.image != node)
+          ++conflicts.images;
+        result.phi[a]    = near.phi;
+        result.inside[a] = near.phi < 0.;
+      }
+    return result;
   }
 
 
   void
-  JumpEnrichment::refuse_own_image(const unsigned int n_conflicts) const
+  JumpEnrichment::refuse(const Conflicts &conflicts) const
   {
-    if (dealii::Utilities::MPI::max(n_conflicts, space_.mesh.communicator()) > 0)
+    std::vector<unsigned int> numbers = {conflicts.images, conflicts.shells};
+    dealii::Utilities::MPI::max(numbers, space_.mesh.communicator(), numbers);
+    if (numbers[1] > 0)
+      throw std::logic_error("JumpEnrichment: shells that are told to be far from each other have a vertex of the mesh in common.");
+    if (numbers[0] > 0)
       throw NumericalError(
         "A capsule has come so near to a periodic image of itself that cells of the fluid see both, which the enriched interface cannot tell apart. "
         "Take a larger Scene/Box side, a smaller Fluid mesh/Finest cell or Solver/Interface = plain.");
@@ -202,56 +201,6 @@ namespace tanktread
     const VertexAverages::Group &group = averages_.groups()[cut.group];
     for (unsigned int i = group.begin; i < group.end; ++i)
       psi_[i] = psi_outside(cut.nodes, q, averages_.unit_position(i));
-  }
-
-
-  void
-  JumpEnrichment::complete(VertexArray &forces) const
-  {
-    for (std::size_t i = 0; i < viscous_forces_.size(); ++i)
-      forces[i] += viscous_forces_[i];
-  }
-
-
-  template <typename Mean>
-  void
-  JumpEnrichment::extend_viscous_forces(const std::vector<double> &gradients, const VertexArray &forces, const Mean &mean, VertexArray &g) const
-  {
-    std::vector<double> at_points(gradients.size() / 3, 0.);
-    for (const VertexAverages::Group &group : averages_.groups())
-      {
-        const VertexForces F = averages_.at_cell(forces, group.cell);
-        for (unsigned int i = group.begin; i < group.end; ++i)
-          {
-            const std::size_t     r      = averages_.point(i);
-            const Eigen::Matrix3d G      = mean(Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(&gradients[9 * r]), i, r, F);
-            const Vector4        &normal = averages_.normal(i);
-            const Eigen::Vector3d n(normal[0], normal[1], normal[2]);
-            const Eigen::Vector3d traction = (1. - contrast_.ratio) * averages_.area(i) * (G * n + G.transpose() * n);
-            std::copy_n(traction.data(), 3, &at_points[3 * r]);
-          }
-      }
-    averages_.extend(at_points, g);
-  }
-
-
-  void
-  JumpEnrichment::viscous_forces(const std::vector<double> &gradients, const VertexArray &forces, VertexArray &g) const
-  {
-    const auto mean = [&](const Eigen::Matrix3d &G, const unsigned int i, std::size_t, const VertexForces &F) {
-      return mean_gradients_[i].without_second_jump(G, F);
-    };
-    extend_viscous_forces(gradients, forces, mean, g);
-  }
-
-
-  void
-  JumpEnrichment::update_viscous_forces(const std::vector<double> &gradients, const std::vector<double> &laplacians, const VertexArray &forces)
-  {
-    const auto mean = [&](const Eigen::Matrix3d &G, const unsigned int i, const std::size_t r, const VertexForces &F) {
-      return mean_gradients_[i](G, Eigen::Vector3d(&laplacians[3 * r]), F, contrast_.ratio);
-    };
-    extend_viscous_forces(gradients, forces, mean, viscous_forces_);
   }
 
 
@@ -354,10 +303,8 @@ namespace tanktread
 
 
   void
-  JumpEnrichment::carry_pressure(const VertexArray &forces, VertexSides &sides, FluidBlockVector &fields) const
+  JumpEnrichment::carry_pressure(const VertexArray &forces, const VertexSides &before, FluidBlockVector &fields) const
   {
-    if (!sides.empty())
-      tanktread::carry_pressure(space_, nearby_cells_, averages_.vertices(), forces, sides, sides_, fields);
-    sides = sides_;
+    tanktread::carry_pressure(*space_.pressure, nearby_cells_, averages_.vertices(), forces, near_vertices_, before, fields);
   }
 } // namespace tanktread

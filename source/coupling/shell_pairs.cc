@@ -87,37 +87,42 @@ namespace tanktread
 
 
   void
-  ShellPairs::reinit(const TaylorHoodSpace &space, const std::vector<JumpEnrichment> &shells, const double viscosity_ratio)
+  ShellPairs::reinit(const TaylorHoodSpace &space, const std::vector<JumpEnrichment> &colours, const double viscosity_ratio)
   {
     space_           = &space;
-    shells_          = &shells;
+    colours_         = &colours;
     viscosity_ratio_ = viscosity_ratio;
     points_.clear();
     cells_.clear();
-    std::unordered_map<unsigned int, std::vector<std::pair<unsigned int, const JumpEnrichment::CutCell *>>> cutters; // of each cell, shells in order
-    for (unsigned int c = 0; shells.size() > 1 && c < shells.size(); ++c)
-      for (const JumpEnrichment::CutCell &cut : shells[c].cut_cells())
+    if (colours.size() < 2)
+      return;
+    // Of each cell, by colours: who has points there, and who cuts it.
+    std::unordered_map<unsigned int, std::vector<std::pair<unsigned int, unsigned int>>>                    groups;
+    std::unordered_map<unsigned int, std::vector<std::pair<unsigned int, const JumpEnrichment::CutCell *>>> cutters;
+    for (unsigned int k = 0; k < colours.size(); ++k)
+      for (unsigned int g = 0; g < colours[k].averages().groups().size(); ++g)
+        groups[colours[k].averages().groups()[g].cell].emplace_back(k, g);
+    for (unsigned int k = 0; k < colours.size(); ++k)
+      for (const JumpEnrichment::CutCell &cut : colours[k].cut_cells())
         {
           auto &others = cutters[cut.cell];
           for (const auto &[other, other_cut] : others)
-            add_cell(other, c, *other_cut, cut);
-          others.emplace_back(c, &cut);
-          for (unsigned int other = 0; other < shells.size(); ++other)
-            if (other != c)
-              add_points(c, other, cut);
+            add_cell(other, k, *other_cut, cut);
+          others.emplace_back(k, &cut);
+          if (const auto found = groups.find(cut.cell); found != groups.end())
+            for (const auto &[other, group] : found->second)
+              if (other != k)
+                add_points(k, other, group, cut);
         }
   }
 
 
   void
-  ShellPairs::add_points(const unsigned int shell, const unsigned int other, const JumpEnrichment::CutCell &cut)
+  ShellPairs::add_points(const unsigned int own, const unsigned int other, const unsigned int group, const JumpEnrichment::CutCell &cut)
   {
-    const VertexAverages &averages = (*shells_)[other].averages();
-    const unsigned int    group    = averages.group_of_cell(cut.cell);
-    if (group == VertexAverages::no_points)
-      return;
-    const NodeAmplitudes q = node_amplitudes(cut.nodes, viscosity_ratio_);
-    SharedPoints         shared{shell, other, cut.cell, group, {}};
+    const VertexAverages &averages = (*colours_)[other].averages();
+    const NodeAmplitudes  q        = node_amplitudes(cut.nodes, viscosity_ratio_);
+    SharedPoints          shared{own, other, cut.cell, group, {}};
     for (unsigned int i = averages.groups()[group].begin; i < averages.groups()[group].end; ++i)
       shared.psi.push_back(psi_outside(cut.nodes, q, averages.unit_position(i)));
     points_.push_back(std::move(shared));
@@ -141,9 +146,9 @@ namespace tanktread
   {
     for (const SharedPoints &shared : points_)
       {
-        const VertexAverages        &own = (*shells_)[shared.shell].averages(), &other = (*shells_)[shared.other].averages();
+        const VertexAverages        &own = (*colours_)[shared.own].averages(), &other = (*colours_)[shared.other].averages();
         const VertexAverages::Group &group = other.groups()[shared.group];
-        const VertexForces           f     = own.at_cell(forces[shared.shell], shared.cell);
+        const VertexForces           f     = own.at_cell(forces[shared.own], shared.cell);
         VertexForces                 r;
         for (unsigned int i = group.begin; i < group.end; ++i)
           {
@@ -158,11 +163,11 @@ namespace tanktread
               }
             value.store(&values[3 * point]);
           }
-        own.add_to_cell(shared.cell, r, duals[shared.shell]);
+        own.add_to_cell(shared.cell, r, duals[shared.own]);
       }
     for (const SharedCell &shared : cells_)
       {
-        const VertexAverages &first = (*shells_)[shared.first].averages(), &second = (*shells_)[shared.second].averages();
+        const VertexAverages &first = (*colours_)[shared.first].averages(), &second = (*colours_)[shared.second].averages();
         const double          h   = space_->velocity->cell_sizes()[shared.cell];
         const VertexForces    f_1 = first.at_cell(forces[shared.first], shared.cell), f_2 = second.at_cell(forces[shared.second], shared.cell);
         VertexForces          r_1, r_2;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Part of Tanktread: forces of one shell extended from its points to the vertices of the cells about it, by averages.
+// Part of Tanktread: forces of shells extended from their points to the vertices of the cells about them, by averages.
 
 #include <tanktread/coupling/vertex_averages.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -25,65 +26,91 @@ namespace tanktread
 
 
   void
-  VertexAverages::move(const ShellConfiguration &shell, const PointInterpolation &points, const PointRange &range, const unsigned int first)
+  VertexAverages::move(std::vector<LocatedShell> shells, const PointInterpolation &points)
   {
+    shells_ = std::move(shells);
     points_ = &points;
-    group_points(range);
+    group_points();
     hats_.resize(order_.size());
     normals_.resize(order_.size());
     areas_.resize(order_.size());
-    for (unsigned int i = 0; i < order_.size(); ++i)
-      {
-        const unsigned int    q      = points.local_points()[order_[i]] - first;
-        const QuadraticPatch &patch  = shell.patches()[q];
-        const Eigen::Vector3d normal = patch.a_1.cross(patch.a_2).normalized();
-        hats_[i]                     = hat_functions(unit_position(i));
-        normals_[i]                  = Vector4(normal.data());
-        areas_[i]                    = shell.point_areas()[q];
-      }
+    for (const Group &group : groups_)
+      for (unsigned int i = group.begin; i < group.end; ++i)
+        {
+          const LocatedShell   &points_of = shells_[group.shell];
+          const unsigned int    q         = points.local_points()[order_[i]] - points_of.first;
+          const QuadraticPatch &patch     = points_of.shell->patches()[q];
+          const Eigen::Vector3d normal    = patch.a_1.cross(patch.a_2).normalized();
+          hats_[i]                        = hat_functions(unit_position(i));
+          normals_[i]                     = Vector4(normal.data());
+          areas_[i]                       = points_of.shell->point_areas()[q];
+        }
     set_weights();
   }
 
 
   void
-  VertexAverages::group_points(const PointRange &range)
+  VertexAverages::group_points()
   {
     const auto &cells = points_->cells();
-    order_.resize(range.end - range.begin);
-    std::iota(order_.begin(), order_.end(), range.begin);
-    std::stable_sort(order_.begin(), order_.end(), [&](const unsigned int r, const unsigned int s) { return cells[r] < cells[s]; });
+    // Shells are sorted one by one: should two be in one cell, they are two groups, and set_weights() will notice.
     groups_.clear();
-    group_of_cell_.assign(vertices_->n_cells(), no_points);
-    for (unsigned int i = 0; i < order_.size(); ++i)
+    order_.clear();
+    for (unsigned int c = 0; c < shells_.size(); ++c)
       {
-        const unsigned int cell = cells[order_[i]];
-        if (groups_.empty() || groups_.back().cell != cell)
+        const std::size_t first = order_.size();
+        order_.resize(first + shells_[c].range.end - shells_[c].range.begin);
+        std::iota(order_.begin() + first, order_.end(), shells_[c].range.begin);
+        std::stable_sort(order_.begin() + first, order_.end(), [&](const unsigned int r, const unsigned int s) { return cells[r] < cells[s]; });
+        for (unsigned int i = first; i < order_.size(); ++i)
           {
-            group_of_cell_[cell] = groups_.size();
-            groups_.push_back({cell, i, i});
+            const unsigned int cell = cells[order_[i]];
+            if (i == first || groups_.back().cell != cell)
+              groups_.push_back({cell, i, i, c});
+            ++groups_.back().end;
           }
-        ++groups_.back().end;
       }
+    std::stable_sort(groups_.begin(), groups_.end(), [](const Group &a, const Group &b) { return a.cell < b.cell; });
+  }
+
+
+  unsigned int
+  VertexAverages::group_of_cell(const unsigned int cell) const
+  {
+    const auto found = std::partition_point(groups_.begin(), groups_.end(), [cell](const Group &group) { return group.cell < cell; });
+    return found != groups_.end() && found->cell == cell ? found - groups_.begin() : no_points;
   }
 
 
   void
   VertexAverages::set_weights()
   {
+    // With each weight the number of the shell and its square: where their variance is not zero, two shells meet.
     VertexArray sums(vertices_->full_size());
     std::fill(sums.begin(), sums.end(), 0.);
     for (const Group &group : groups_)
       {
-        const unsigned int *const nodes = vertices_->cell_nodes(group.cell);
+        const unsigned int *const nodes  = vertices_->cell_nodes(group.cell);
+        const double              number = shells_[group.shell].number;
         for (unsigned int i = group.begin; i < group.end; ++i)
           for (unsigned int v = 0; v < 8; ++v)
-            sums[4 * std::size_t(nodes[v])] += hats_[i][v] * areas_[i];
+            {
+              const double  weight = hats_[i][v] * areas_[i];
+              double *const sum    = &sums[4 * std::size_t(nodes[v])];
+              (Vector4::of_four(sum) + Vector4(weight, weight * number, weight * number * number)).store_four(sum);
+            }
       }
     vertices_->collect(sums.data());
-    inverse_weights_.resize(vertices_->n_owned());
-    // Vertices of cut cells that see no point belong to corners that are barely cut: nothing is extended to them.
-    for (std::size_t i = 0; i < inverse_weights_.size(); ++i)
-      inverse_weights_[i] = sums[4 * i] > 1e-14 ? 1. / sums[4 * i] : 0.;
+    seeing_vertices_.clear();
+    n_meetings_ = 0;
+    for (unsigned int i = 0; i < vertices_->n_owned(); ++i)
+      if (const double *const sum = &sums[4 * std::size_t(i)]; sum[0] != 0.)
+        {
+          // Vertices of cut cells that see no point belong to corners that are barely cut: nothing is extended to them.
+          const double mean = sum[1] / sum[0];
+          seeing_vertices_.push_back({i, static_cast<unsigned int>(std::lround(mean)), sum[0] > 1e-14 ? 1. / sum[0] : 0.});
+          n_meetings_ += sum[2] / sum[0] - mean * mean > 1e-12 * (1. + mean * mean);
+        }
   }
 
 
@@ -116,9 +143,9 @@ namespace tanktread
   VertexAverages::average(VertexArray &values) const
   {
     vertices_->collect(values.data());
-    for (std::size_t i = 0; i < inverse_weights_.size(); ++i)
+    for (const SeeingVertex &vertex : seeing_vertices_)
       for (unsigned int c = 0; c < 4; ++c)
-        values[4 * i + c] *= inverse_weights_[i];
+        values[4 * std::size_t(vertex.node) + c] *= vertex.inverse_weight;
     vertices_->update(values.data());
   }
 

@@ -1,60 +1,61 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Part of Tanktread: on which side of a shell the pressure's vertices lie, and what a pressure takes along when that changes.
+// Part of Tanktread: inside which shells the pressure's vertices lie, and what a pressure takes along when that changes.
 
-#include <tanktread/coupling/cut_cell_forms.h>
 #include <tanktread/coupling/vertex_sides.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace tanktread
 {
-  namespace
+  std::vector<NearVertex>
+  find_near_vertices(const NodeSpace &vertices, const std::vector<NearCell> &cells)
   {
-    /** A full array of pressures with value(cell, j) at the vertices of the cells, summed over the ranks that know them. */
-    template <typename Value>
-    dealii::AlignedVector<double>
-    sum_over_ranks(const NodeSpace &space, const std::vector<unsigned int> &cells, const Value &value)
-    {
-      dealii::AlignedVector<double> result(space.full_size());
-      std::fill(result.begin(), result.end(), 0.);
-      for (const unsigned int cell : cells)
-        for (unsigned int j = 0; j < 8; ++j)
-          result[space.cell_nodes(cell)[j]] = value(cell, j);
-      space.collect(result.data());
-      return result;
-    }
-  } // namespace
-
-
-  VertexSides
-  vertex_sides(const TaylorHoodSpace &space, const std::vector<unsigned int> &nearby_cells, const std::vector<double> &phi)
-  {
-    const auto  values = sum_over_ranks(*space.pressure, nearby_cells, [&](const unsigned int cell, const unsigned int j) {
-      return phi[space.velocity->cell_nodes(cell)[node_of_vertex(j)]] < 0. ? -1. : 1.;
-    });
-    VertexSides result(space.pressure->n_owned());
-    for (std::size_t i = 0; i < result.size(); ++i)
-      result[i] = (values[i] > 0.) - (values[i] < 0.);
+    // Ones, sides, numbers of shells and their squares: where the variance of the numbers is not zero a vertex sees two.
+    VertexArray sums(vertices.full_size());
+    std::fill(sums.begin(), sums.end(), 0.);
+    for (const NearCell &near : cells)
+      for (unsigned int j = 0; j < 8; ++j)
+        {
+          const double number = near.shell;
+          Vector4(1., near.inside[j] ? -1. : 1., number, number * number).store_four(&sums[4 * std::size_t(vertices.cell_nodes(near.cell)[j])]);
+        }
+    vertices.collect(sums.data());
+    std::vector<NearVertex> result;
+    for (unsigned int i = 0; i < vertices.n_owned(); ++i)
+      if (const double *const sum = &sums[4 * std::size_t(i)]; sum[0] > 0.)
+        {
+          const double mean = sum[2] / sum[0];
+          // Masters of hanging vertices may get as much from one side as from the other: those are on none.
+          if (sum[1] != 0.)
+            result.push_back({i, static_cast<unsigned int>(std::lround(mean)), sum[1]<0., sum[3] / sum[0] - mean * mean> 1e-12 * (1. + mean * mean), sum[0]});
+        }
     return result;
   }
 
 
   void
-  carry_pressure(const TaylorHoodSpace           &space,
-                 const std::vector<unsigned int> &nearby_cells,
-                 const NodeSpace                 &vertices,
-                 const VertexArray               &forces,
-                 const VertexSides               &before,
-                 const VertexSides               &now,
-                 FluidBlockVector                &fields)
+  carry_pressure(const NodeSpace               &pressure,
+                 const std::vector<NearCell>   &cells,
+                 const NodeSpace               &vertices,
+                 const VertexArray             &forces,
+                 const std::vector<NearVertex> &now,
+                 const VertexSides             &before,
+                 FluidBlockVector              &fields)
   {
-    const NodeSpace &nodes = *space.pressure;
-    const auto       known = sum_over_ranks(nodes, nearby_cells, [](const unsigned int, const unsigned int) { return 1.; });
-    auto             jumps = sum_over_ranks(nodes, nearby_cells, [&](const unsigned int cell, const unsigned int j) {
-      return forces[4 * std::size_t(vertices.cell_nodes(cell)[j]) + 3];
-    });
-    for (std::size_t i = 0; i < nodes.n_owned(); ++i)
-      jumps[i] = before[i] * now[i] < 0 ? now[i] * jumps[i] / known[i] : 0.;
-    nodes.store(jumps.data(), fields.block(pressure_block), true);
+    dealii::AlignedVector<double> jumps(pressure.full_size());
+    std::fill(jumps.begin(), jumps.end(), 0.);
+    for (const NearCell &near : cells)
+      for (unsigned int j = 0; j < 8; ++j)
+        jumps[pressure.cell_nodes(near.cell)[j]] = forces[4 * std::size_t(vertices.cell_nodes(near.cell)[j]) + 3];
+    pressure.collect(jumps.data());
+    FluidVector &p = fields.block(pressure_block);
+    for (const NearVertex &vertex : now)
+      {
+        const int  shell      = vertex.shell;
+        const bool was_inside = before[vertex.node] == shell;
+        if (before[vertex.node] != unknown_side && was_inside != vertex.inside)
+          p.local_element(vertex.node) += (was_inside ? 1. : -1.) * jumps[vertex.node] / vertex.n_values;
+      }
   }
 } // namespace tanktread

@@ -51,14 +51,15 @@ namespace tanktread
   ResolutionMonitor::measure(const State &state, std::vector<CapsuleObservables> &capsules) const
   {
     const Timings::Scope       scope(scene_.timings(), "- resolution");
-    const ShellJumps          &jumps  = scene_.coupling().jumps();
-    const ShellConfigurations &shells = scene_.level().shells(state);
+    const ShellJumps          &jumps      = scene_.coupling().jumps();
+    const ShellConfigurations &shells     = scene_.level().shells(state);
+    const auto                 interfaces = interface_quality(jumps, scene_.communicator());
     for (std::size_t c = 0; c < capsules.size(); ++c)
       {
         capsules[c].shape    = mesh_quality_(state.capsules[c].x);
         capsules[c].self_gap = smallest_self_gap(*shells[c], context_.finest_cell);
         if (!jumps.are_none())
-          capsules[c].interface = interface_quality(jumps.shells()[c], scene_.communicator());
+          capsules[c].interface = interfaces[c];
       }
   }
 

@@ -74,8 +74,7 @@ namespace tanktread
         flows.push_back(&level.state.fluid);
       }
     for (State *const level : levels)
-      for (CapsuleState &capsule : level->capsules)
-        capsule.sides.clear();
+      level->sides.clear();
     const FieldTransfer transfer(scene_.fluid().space(), flows);
     scene_.refine_around(state, others);
     transfer.interpolate(scene_.fluid().space(), flows);

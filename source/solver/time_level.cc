@@ -206,10 +206,7 @@ namespace tanktread
   void
   TimeLevel::carry_pressure(State &state) const
   {
-    std::vector<VertexSides *> sides;
-    for (CapsuleState &capsule : state.capsules)
-      sides.push_back(&capsule.sides);
-    coupling_.carry_pressure(forces(state), sides, state.fluid);
+    coupling_.carry_pressure(forces(state), state.sides, state.fluid);
   }
 
 

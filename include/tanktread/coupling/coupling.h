@@ -152,12 +152,12 @@ namespace tanktread
     density(const ShellFields &f) const;
 
     /**
-     * Adds to the pressure of `fields` what it jumps where the shells with nodal forces f have passed a vertex of the mesh since `sides` (of each shell), which
+     * Adds to the pressure of `fields` what it jumps where the shells with nodal forces f have passed a vertex of the mesh since `sides`, which
      * become the sides at move(). Nothing if `sides` are empty, before
      * the first move() on a mesh, and with the plain interface. Collective.
      */
     void
-    carry_pressure(const ShellFields &f, const std::vector<VertexSides *> &sides, FluidBlockVector &fields) const;
+    carry_pressure(const ShellFields &f, VertexSides &sides, FluidBlockVector &fields) const;
 
     /** load += R M g without what the jumps add. */
     void

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Part of Tanktread: the kink of the velocity and the jump of the pressure at one shell, in the cells that it cuts.
+// Part of Tanktread: the kink of the velocity and the jump of the pressure at shells that are far from each other, in the cells that they cut.
 
 #ifndef tanktread_coupling_jump_enrichment_h
 #define tanktread_coupling_jump_enrichment_h
@@ -12,7 +12,10 @@
 #include <tanktread/coupling/vertex_sides.h>
 #include <tanktread/fluid/undisturbed_flow.h>
 
+#include <array>
 #include <memory>
+#include <unordered_map>
+#include <vector>
 
 namespace tanktread
 {
@@ -38,8 +41,9 @@ namespace tanktread
    *     load        R f = (<f, v> - a(psi, v) + (eta, div v),  (q, div psi))
    *     velocity    U   = R^T (u_h, p_h) + Q f,      <g, Q f> = <g, psi_f> + <f, psi_g> - a(psi_f, psi_g) + (eta_f, div psi_g) + (eta_g, div psi_f)
    *
-   * This class adds what is more than <f, v> and its transpose, for one shell and its own forces; what the forces of one shell do in cells that another one
-   * cuts is in ShellPairs.
+   * This class adds what is more than <f, v> and its transpose, for one shell and its own forces, or for several at once that are so far from each other that
+   * they share no vertex of a cell near them, nor a master of one (ShellJumps says which); what the forces of one shell do in cells that another one cuts is in
+   * ShellPairs.
    *
    * Viscosity mu = 1 outside and lambda inside: the conditions at the shell are then
    *
@@ -53,18 +57,24 @@ namespace tanktread
   class JumpEnrichment
   {
   public:
-    /** Keeps `space` by reference. @param vertices linear nodes with four components on its mesh. */
-    JumpEnrichment(const TaylorHoodSpace &space, std::shared_ptr<const NodeSpace> vertices, const ViscosityContrast &contrast);
+    /**
+     * Keeps `space` by reference. @param vertices linear nodes with four components on its mesh, numbered as the pressure's. @param locator of the mesh's
+     * cells.
+     */
+    JumpEnrichment(const TaylorHoodSpace             &space,
+                   std::shared_ptr<const NodeSpace>   vertices,
+                   std::shared_ptr<const CellLocator> locator,
+                   const ViscosityContrast           &contrast);
 
     /**
-     * Computes everything that depends on where the shell is.
+     * Computes everything that depends on where the shells are, but for the viscous forces.
      *
-     * @param points of all shells, kept by reference; those of this one are `range`, the first of them has the number `first`. Collective. Throws
-     * NumericalError if the shell is so near to a periodic image of itself that a node of
-     * the mesh is near to both.
+     * @param shells those near this rank's cells, in the order of their points. @param points of all shells, kept by reference. Collective. Throws
+     * NumericalError if a shell is so near to a periodic image of itself that a node of the mesh is near to both, std::logic_error if a vertex is near to two
+     * shells.
      */
     void
-    move(const ShellConfiguration &shell, const PointInterpolation &points, const PointRange &range, unsigned int first);
+    move(std::vector<LocatedShell> shells, const PointInterpolation &points);
 
     /** Adds g to forces at the vertices; with one viscosity nothing. */
     void
@@ -75,21 +85,32 @@ namespace tanktread
      *
      * @param gradients of u_inf + u_h at the points of all shells on this rank, 9 numbers each, entry 3 c + d being du_c/dx_d. @param laplacians of the same, 3
      * numbers each. @param forces whole ones at the
-     * vertices. Collective.
+     * vertices. @param tractions memory, 3 numbers a point of all shells. Collective.
      */
     void
-    update_viscous_forces(const std::vector<double> &gradients, const std::vector<double> &laplacians, const VertexArray &forces);
+    update_viscous_forces(const std::vector<double> &gradients,
+                          const std::vector<double> &laplacians,
+                          const VertexArray         &forces,
+                          std::vector<double>       &tractions);
 
     /** That map, which is linear, without what the jump of the second derivatives adds. */
     void
-    viscous_forces(const std::vector<double> &gradients, const VertexArray &forces, VertexArray &g) const;
+    viscous_forces(const std::vector<double> &gradients, const VertexArray &forces, std::vector<double> &tractions, VertexArray &g) const;
 
-    /** g of the flow before, for a checkpoint or a test. */
-    const VertexArray &
-    viscous_forces() const
+    /** g at a free vertex of this rank, which belongs to the shell of that number. */
+    struct ViscousForce
     {
-      return viscous_forces_;
-    }
+      unsigned int          node, shell;
+      std::array<double, 4> value;
+    };
+
+    /** Appends g where it is not zero; to be called after update_viscous_forces(), before the shells move. */
+    void
+    append_viscous_forces(std::vector<ViscousForce> &forces) const;
+
+    /** Makes them g, all the rest zero. Collective. */
+    void
+    set_viscous_forces(const std::vector<ViscousForce> &forces);
 
     /** 2 ((mu - 1) eps(u_inf), eps(psi)) in the cells of this rank. */
     double
@@ -104,7 +125,7 @@ namespace tanktread
     add_field_response(const double *u, const double *p, VertexArray &dual) const;
 
     /**
-     * dual, values += Q of this shell's own forces.
+     * dual, values += Q of the shells' own forces.
      *
      * @param at_points force times area at the points of all shells, as `values`. @param whole with what does not depend on the forces, see complete().
      */
@@ -116,17 +137,18 @@ namespace tanktread
     {
       return averages_;
     }
-    const VertexSides &
-    sides() const
+    /** The pressure's vertices near the shells. */
+    const std::vector<NearVertex> &
+    near_vertices() const
     {
-      return sides_;
+      return near_vertices_;
     }
 
-    /** See tanktread::carry_pressure(); afterwards `sides` is sides(). Nothing but that if it was empty. Collective. */
+    /** See tanktread::carry_pressure(). Collective. */
     void
-    carry_pressure(const VertexArray &forces, VertexSides &sides, FluidBlockVector &fields) const;
+    carry_pressure(const VertexArray &forces, const VertexSides &before, FluidBlockVector &fields) const;
 
-    /** A cell that the shell cuts. */
+    /** A cell that one of the shells cuts. */
     struct CutCell
     {
       unsigned int                        cell, group; // the latter: its points, or VertexAverages::no_points
@@ -139,7 +161,7 @@ namespace tanktread
     {
       return cut_cells_;
     }
-    /** How often the shell cuts cells of this rank that are not finest ones, in which kink and jump are missing. */
+    /** How often the shells cut cells of this rank that are not finest ones, in which kink and jump are missing. */
     unsigned int
     n_coarse_cut_cells() const
     {
@@ -147,33 +169,53 @@ namespace tanktread
     }
 
   private:
+    /** What is known of a node near a shell. */
+    struct NearNode
+    {
+      double       phi;
+      Lattice      image; // its place on the lattice of the finest cells' nodes, by which phi is known
+      unsigned int shell; // number
+    };
+    using NearNodes = std::unordered_map<unsigned int, NearNode>;
+
+    /** Nodes for which what one cell says does not agree with another one. */
+    struct Conflicts
+    {
+      unsigned int images = 0, shells = 0;
+    };
+
     void
-    find_cut_cells(const SurfaceDistance &distance);
+    find_cut_cells(const SurfaceDistance &distance, unsigned int shell, NearNodes &known, Conflicts &conflicts);
+    NodeDistances
+    node_distances(const SurfaceDistance &distance, unsigned int shell, const Lattice &position, unsigned int cell, NearNodes &known, Conflicts &conflicts)
+      const;
+    /** Collective. */
     void
-    refuse_own_image(unsigned int n_conflicts) const;
+    refuse(const Conflicts &conflicts) const;
     void
     add_cut_cell(unsigned int cell, const dealii::Point<3> &centre, const NodeDistances &nodes);
     /** psi at the points of a cut cell. */
     void
     set_point_values(const CutCell &cut, const NodeAmplitudes &q);
-    /** At all points, with two viscosities. @param patches of the shell at its points, of which the first has the number `first`. */
+    /** At all points, with two viscosities. */
     void
-    set_mean_gradients(const std::vector<QuadraticPatch> &patches, const PointInterpolation &points, unsigned int first);
+    set_mean_gradients(const PointInterpolation &points);
 
     /** g from the mean gradients, mean(G, i, r, F) being that at the place i, of the point r. */
     template <typename Mean>
     void
-    extend_viscous_forces(const std::vector<double> &gradients, const VertexArray &forces, const Mean &mean, VertexArray &g) const;
+    extend_viscous_forces(const std::vector<double> &gradients, const VertexArray &forces, const Mean &mean, std::vector<double> &tractions, VertexArray &g)
+      const;
 
     const TaylorHoodSpace             &space_;
     const ViscosityContrast            contrast_;
-    CellLocator                        locator_;
+    std::shared_ptr<const CellLocator> locator_;
     VertexAverages                     averages_;
     std::vector<CutCell>               cut_cells_;
     std::vector<TransposedPart>        transposed_;   // of each cut cell; none with one viscosity
-    std::vector<unsigned int>          nearby_cells_; // whose nodes' distances are known
+    std::vector<NearCell>              nearby_cells_; // whose nodes' distances are known
     unsigned int                       n_coarse_cut_cells_ = 0;
-    VertexSides                        sides_;
+    std::vector<NearVertex>            near_vertices_;
     std::vector<std::array<double, 8>> psi_;            // psi_v at the points, in the order of the averages
     std::vector<MeanGradient>          mean_gradients_; // in that order; none with one viscosity
     VertexArray                        viscous_forces_; // g_t and g_n; empty with one viscosity

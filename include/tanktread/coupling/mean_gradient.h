@@ -25,6 +25,9 @@ namespace tanktread
   class MeanGradient
   {
   public:
+    /** Of no cell: to be assigned to. */
+    MeanGradient() = default;
+
     /** @param unit place in the cell. @param h its size. @param q as for psi. @param patch of the shell at the point. */
     MeanGradient(const NodeDistances &nodes, const NodeAmplitudes &q, const dealii::Point<3> &unit, double h, const QuadraticPatch &patch);
 

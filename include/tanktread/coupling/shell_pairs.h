@@ -23,13 +23,16 @@ namespace tanktread
   class ShellPairs
   {
   public:
-    /** Finds the cells; to be called when all shells have moved. `space` and `shells` are kept by reference. */
+    /**
+     * Finds the cells; to be called when all shells have moved. `space` and `colours` are kept by reference. Shells of one colour do not meet: what are shells
+     * c, d above are colours here.
+     */
     void
-    reinit(const TaylorHoodSpace &space, const std::vector<JumpEnrichment> &shells, double viscosity_ratio);
+    reinit(const TaylorHoodSpace &space, const std::vector<JumpEnrichment> &colours, double viscosity_ratio);
 
     /**
-     * duals, values += Q_cd f_d for all pairs, in the arrays of JumpEnrichment::add_self_response(), one for each shell but `values` and `at_points`, which
-     * hold the points of all of them.
+     * duals, values += Q_cd f_d for all pairs, in the arrays of JumpEnrichment::add_self_response(), one for each colour but `values` and `at_points`, which
+     * hold the points of all shells.
      */
     void
     add_response(const std::vector<double>      &at_points,
@@ -45,10 +48,10 @@ namespace tanktread
     }
 
   private:
-    /** Points of shell `other` in a cell that `shell` cuts, and psi_v of `shell` there. */
+    /** Points of the colour `other` in a cell that a shell of the colour `own` cuts, and psi_v of the latter there. */
     struct SharedPoints
     {
-      unsigned int                       shell, other, cell, group; // the latter in the averages of `other`
+      unsigned int                       own, other, cell, group; // the latter in the averages of `other`
       std::vector<std::array<double, 8>> psi;
     };
 
@@ -62,12 +65,12 @@ namespace tanktread
     };
 
     void
-    add_points(unsigned int shell, unsigned int other, const JumpEnrichment::CutCell &cut);
+    add_points(unsigned int own, unsigned int other, unsigned int group, const JumpEnrichment::CutCell &cut);
     void
     add_cell(unsigned int first, unsigned int second, const JumpEnrichment::CutCell &cut_first, const JumpEnrichment::CutCell &cut_second);
 
     const TaylorHoodSpace             *space_           = nullptr;
-    const std::vector<JumpEnrichment> *shells_          = nullptr;
+    const std::vector<JumpEnrichment> *colours_         = nullptr;
     double                             viscosity_ratio_ = 1.;
     std::vector<SharedPoints>          points_;
     std::vector<SharedCell>            cells_;

@@ -10,6 +10,7 @@
 #include <tanktread/shell/shell_configuration.h>
 
 #include <map>
+#include <unordered_map>
 #include <vector>
 
 namespace tanktread
@@ -18,6 +19,8 @@ namespace tanktread
    * Tells the cells inside shells from those outside. Cells that a shell cuts, where the distances of the 27 nodes have both signs, have the smaller viscosity
    * and weights for what there is more on the side of the larger one, see inside_weights(). Of the other cells those are inside that the shell's neighbourhood
    * separates from the rest of the box, or whose distances are negative. Insides do not overlap: where two shells cut a cell their weights add.
+   *
+   * Each shell goes down the octree to the cells in the box about it: time goes with the cells near and inside shells.
    */
   class ShellViscosity
   {
@@ -32,8 +35,9 @@ namespace tanktread
   private:
     struct Cell
     {
-      Lattice position; // of the lower corner
-      int     size;     // in finest cells
+      Lattice      position; // of the lower corner
+      int          size;     // in finest cells
+      unsigned int number;   // among this rank's cells
     };
 
     /** What lies inside shells. */
@@ -43,11 +47,27 @@ namespace tanktread
       std::map<unsigned int, CellWeights> inside;    // of cells that are cut
     };
 
+    /** Of nodes near a shell. */
+    using Distances = std::unordered_map<unsigned int, double>;
+
+    using CellIterator = dealii::Triangulation<3>::cell_iterator;
+
     void
     add_shell(const SurfaceDistance &distance, Parts &parts) const;
+    /** Appends this rank's active cells within `cell` that overlap the box about the cells near the shell. */
+    void
+    find_cells(const CellIterator &cell, const SurfaceDistance &distance, std::vector<Cell> &cells) const;
+    /** The image of a finest cell that may be near the shell or inside. */
+    Lattice
+    image(Lattice cell, const SurfaceDistance &distance) const;
+    Side
+    side(const Cell &cell, const SurfaceDistance &distance, const CellSides &sides) const;
+    /** @param centre image of the finest cell at its centre. */
+    void
+    add_near_cell(const Cell &cell, const Lattice &centre, const SurfaceDistance &distance, Distances &phi, Parts &parts) const;
 
-    const TaylorHoodSpace &space_;
-    std::vector<Cell>      cells_;
+    const TaylorHoodSpace    &space_;
+    std::vector<unsigned int> number_; // of each active cell among those of this rank
   };
 } // namespace tanktread
 

@@ -49,6 +49,12 @@ namespace tanktread
     {
       return low_;
     }
+    /** How many cells from the lowest to the highest of the cells nearby in each direction. */
+    Lattice
+    extent() const
+    {
+      return {{size_x_, rows_.size_y, rows_.size_z}};
+    }
 
   private:
     /** A cell that contains points. */

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Part of Tanktread: forces of one shell extended from its points to the vertices of the cells about it, by averages.
+// Part of Tanktread: forces of shells extended from their points to the vertices of the cells about them, by averages.
 
 #ifndef tanktread_coupling_vertex_averages_h
 #define tanktread_coupling_vertex_averages_h
@@ -26,12 +26,21 @@ namespace tanktread
     unsigned int begin = 0, end = 0;
   };
 
+  /** A shell and its points on this rank. */
+  struct LocatedShell
+  {
+    const ShellConfiguration *shell;
+    PointRange                range;  // among the points of all shells on this rank
+    unsigned int              first;  // number of its first point among those of all shells
+    unsigned int              number; // of the shell
+  };
+
   /**
    * f_t and f_n at a vertex x_v are averages of the forces per area at the points X_q of the surface with the mesh's linear hat functions as weights,
    *
    *     f_v = sum_q M_v(X_q) f_q dA_q / sum_q M_v(X_q) dA_q,   f_t = f - f_n n,   f_n = f . n,
    *
-   * and zero at vertices that see no point. extend() is this map, add_transposed() its transpose.
+   * and zero at vertices that see no point. extend() is this map, add_transposed() its transpose. Of several shells at once if no vertex sees two of them.
    */
   class VertexAverages
   {
@@ -39,12 +48,34 @@ namespace tanktread
     /** @param vertices linear nodes with four components. */
     explicit VertexAverages(std::shared_ptr<const NodeSpace> vertices);
 
-    /**
-     * @param points of all shells, kept by reference. @param range those of this shell. @param first number of its first point among those of all shells.
-     * Collective.
-     */
+    /** @param shells in the order of their points. @param points of all shells, kept by reference. Collective. */
     void
-    move(const ShellConfiguration &shell, const PointInterpolation &points, const PointRange &range, unsigned int first);
+    move(std::vector<LocatedShell> shells, const PointInterpolation &points);
+
+    const std::vector<LocatedShell> &
+    shells() const
+    {
+      return shells_;
+    }
+
+    /** Vertices of this rank that see points of two shells: there must be none. */
+    unsigned int
+    n_meetings() const
+    {
+      return n_meetings_;
+    }
+
+    /** A free vertex of this rank that sees points. */
+    struct SeeingVertex
+    {
+      unsigned int node, shell; // the latter's number
+      double       inverse_weight;
+    };
+    const std::vector<SeeingVertex> &
+    seeing_vertices() const
+    {
+      return seeing_vertices_;
+    }
 
     /** @param at_points force times area at the points of all shells on this rank, 3 numbers each. Collective. */
     void
@@ -57,7 +88,7 @@ namespace tanktread
     /** Points of one cell: places [begin, end) in the order of cells. */
     struct Group
     {
-      unsigned int cell, begin, end;
+      unsigned int cell, begin, end, shell; // the latter's place in shells()
     };
     static constexpr unsigned int no_points = static_cast<unsigned int>(-1);
 
@@ -68,10 +99,7 @@ namespace tanktread
     }
     /** Number of a cell's group, or no_points. */
     unsigned int
-    group_of_cell(const unsigned int cell) const
-    {
-      return group_of_cell_[cell];
-    }
+    group_of_cell(unsigned int cell) const;
     unsigned int
     n_points() const
     {
@@ -114,7 +142,7 @@ namespace tanktread
 
   private:
     void
-    group_points(const PointRange &range);
+    group_points();
     void
     set_weights();
     /** Sums over cells and ranks become averages, known at all vertices of this rank's cells. */
@@ -123,12 +151,14 @@ namespace tanktread
 
     std::shared_ptr<const NodeSpace>   vertices_;
     const PointInterpolation          *points_ = nullptr;
-    std::vector<unsigned int>          order_; // local points by cell
-    std::vector<Group>                 groups_;
-    std::vector<unsigned int>          group_of_cell_;
-    std::vector<std::array<double, 8>> hats_; // M_v at the points, in that order
+    std::vector<LocatedShell>          shells_;
+    std::vector<unsigned int>          order_;  // local points by cell
+    std::vector<Group>                 groups_; // cells ascending
+    std::vector<std::array<double, 8>> hats_;   // M_v at the points, in that order
     std::vector<Vector4>               normals_;
-    std::vector<double>                areas_, inverse_weights_;
+    std::vector<double>                areas_;
+    std::vector<SeeingVertex>          seeing_vertices_;
+    unsigned int                       n_meetings_ = 0;
   };
 
   /** The trilinear functions of the eight vertices of the unit cube. */

@@ -20,7 +20,6 @@ namespace tanktread
     ControlPoints force;              // F, NP x 3
     double        pressure_jump = 0.; // pi: pressure of the capsule's interior above that of the continuous field
     double        volume_shift  = 0.; // sigma: displacement along m = M^{-1} dV/dx, in a, that undoes the volume error of the time scheme
-    VertexSides   sides;              // on which side of the shell the pressure's vertices were, see Coupling::carry_pressure()
   };
 
   /** Unknowns of one time level: the liquid's and each capsule's. */
@@ -28,6 +27,7 @@ namespace tanktread
   {
     FluidBlockVector          fluid; // disturbance velocity and pressure, condensed: constrained entries are zero
     std::vector<CapsuleState> capsules;
+    VertexSides               sides; // inside which shells the pressure's vertices were, see Coupling::carry_pressure()
   };
 
   /** Control points of all capsules. */
