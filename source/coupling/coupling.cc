@@ -3,24 +3,27 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <tanktread/base/mpi_errors.h>
 #include <tanktread/coupling/coupling.h>
+#include <tanktread/coupling/shell_neighbours.h>
 #include <tanktread/surface/surface_geometry.h>
 
 #include <algorithm>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
 namespace tanktread
 {
-  Coupling::Coupling(const Capsule &capsule, const unsigned int n_capsules, const Interface interface)
-    : capsule_(capsule)
+  Coupling::Coupling(const ShellLayout &layout, const Interface interface)
+    : layout_(layout)
     , interface_(interface)
+    , guests_(layout)
   {
-    if (interface == Interface::enriched && capsule.coupling_surface().derivatives() != Derivatives::second)
-      throw std::logic_error("The enriched interface needs second derivatives of the coupling's surface.");
-    for (unsigned int c = 0; c < n_capsules; ++c)
-      transfers_.emplace_back(capsule, c * capsule.coupling_surface().n_points());
+    for (unsigned int k = 0; k < layout.capsules().n_kinds(); ++k)
+      if (interface == Interface::enriched && layout.capsules().kind(k).coupling_surface().derivatives() != Derivatives::second)
+        throw std::logic_error("The enriched interface needs second derivatives of the coupling's surface.");
   }
 
 
@@ -29,17 +32,66 @@ namespace tanktread
   {
     space_         = &space;
     interpolation_ = std::make_unique<PointInterpolation>(space);
-    jumps_         = std::make_unique<ShellJumps>(space, contrast_, interface_ == Interface::enriched ? n_capsules() : 0);
-    moved_         = false;
+    jumps_         = std::make_unique<ShellJumps>(space, contrast_, interface_ == Interface::enriched ? layout_.n_capsules() : 0);
+    guests_.clear();
+    shells_.clear();
+    transfers_.clear();
+    moved_ = false;
   }
 
 
   std::vector<dealii::Point<3>>
-  Coupling::points(const ShellConfigurations &shells) const
+  Coupling::points(const ShellConfigurations &shells)
   {
     std::vector<dealii::Point<3>> result;
-    for (unsigned int c = 0; c < n_capsules(); ++c)
-      transfers_[c].append_points(*shells[c], result);
+    for (const auto &shell : shells)
+      for (Eigen::Index q = 0; q < shell->points().rows(); ++q)
+        result.emplace_back(shell->points()(q, 0), shell->points()(q, 1), shell->points()(q, 2));
+    return result;
+  }
+
+
+  void
+  Coupling::evaluate(const ShellConfigurations &shells) const
+  {
+    on_all_ranks(layout_.communicator(), [&] {
+      for (const auto &shell : shells)
+        {
+          shell->points();
+          shell->normal_square();
+          if (interface_ == Interface::enriched)
+            {
+              shell->patches();
+              shell->point_areas();
+            }
+        }
+    });
+  }
+
+
+  ShellConfigurations
+  Coupling::present_shells(const ShellConfigurations &own, const ShellGuests &guests, const ShellConfigurations &known) const
+  {
+    const std::vector<unsigned int> &present = guests.present();
+    ShellFields                      x;
+    std::vector<ShellGuests::Block>  blocks;
+    for (const unsigned int c : present)
+      x.push_back(ControlPoints::Zero(layout_.capsules()[c].n_control_points(), 3));
+    for (unsigned int i = 0; i < own.size(); ++i)
+      x[guests.place_of_own(i)] = own[i]->x();
+    for (ControlPoints &field : x)
+      blocks.push_back({field.data(), std::size_t(field.size())});
+    guests.update(blocks);
+    ShellConfigurations result(present.size());
+    for (unsigned int i = 0; i < own.size(); ++i)
+      result[guests.place_of_own(i)] = own[i];
+    for (unsigned int p = 0; p < present.size(); ++p)
+      if (!result[p])
+        {
+          const Capsule &capsule = layout_.capsules()[present[p]];
+          const auto same = std::find_if(known.begin(), known.end(), [&](const auto &shell) { return &shell->capsule() == &capsule && shell->x() == x[p]; });
+          result[p]       = same != known.end() ? *same : std::make_shared<ShellConfiguration>(capsule, std::move(x[p]));
+        }
     return result;
   }
 
@@ -47,13 +99,27 @@ namespace tanktread
   void
   Coupling::move(const ShellConfigurations &shells)
   {
-    points_.clear();
-    for (unsigned int c = 0; c < n_capsules(); ++c)
-      transfers_[c].append_points(*shells[c], points_);
     moved_ = false;
-    interpolation_->reinit(points_);
-    for (unsigned int c = 0; c < n_capsules(); ++c)
-      transfers_[c].move(shells[c], *interpolation_);
+    evaluate(shells);
+    ShellConfigurations known;
+    for (const ShellTransfer &transfer : transfers_)
+      known.push_back(transfer.shell_pointer());
+    guests_.find(space_->mesh, shells);
+    const ShellConfigurations present = present_shells(shells, guests_, known);
+    evaluate(present);
+    shells_ = shells;
+    transfers_.clear();
+    std::size_t n_points = 0, n_all = 0;
+    for (const auto &shell : present)
+      {
+        transfers_.emplace_back(shell->capsule(), n_points);
+        n_points += shell->points().rows();
+      }
+    for (unsigned int c = 0; c < layout_.n_capsules(); ++c)
+      n_all += layout_.capsules()[c].coupling_surface().n_points();
+    interpolation_->reinit(points(present), n_all);
+    for (unsigned int p = 0; p < present.size(); ++p)
+      transfers_[p].move(present[p], *interpolation_);
     normal_forces_.resize(3 * interpolation_->local_points().size());
     for (const ShellTransfer &transfer : transfers_)
       transfer.set_point_forces(transfer.shell().normal_field(), normal_forces_);
@@ -73,60 +139,101 @@ namespace tanktread
     if (!moved_)
       return std::numeric_limits<double>::infinity();
     double result = 0.;
-    for (unsigned int c = 0; c < n_capsules(); ++c)
-      if (shells[c] != transfers_[c].shell_pointer())
-        result = std::max(result, (shells[c]->x() - transfers_[c].shell().x()).rowwise().norm().maxCoeff());
-    return result;
+    for (unsigned int i = 0; i < shells.size(); ++i)
+      if (shells[i] != shells_[i])
+        result = std::max(result, (shells[i]->x() - shells_[i]->x()).rowwise().norm().maxCoeff());
+    return layout_.max(result);
   }
 
 
   Viscosity
   Coupling::viscosity(const ShellConfigurations &shells) const
   {
-    return ShellViscosity(*space_)(shells, contrast_.ratio);
+    // Those about cells that are far from them too: what lies inside has another viscosity.
+    const ShellConfigurations about = shells_about_cells(layout_, shells, space_->mesh).shells;
+    on_all_ranks(layout_.communicator(), [&] {
+      for (const auto &shell : about)
+        shell->patches();
+    });
+    return ShellViscosity(*space_)(about, contrast_.ratio);
+  }
+
+
+  const ShellFields &
+  Coupling::at_guests(const ShellFields &own, ShellFields &memory) const
+  {
+    // A rank without guests may have capsules that are guests elsewhere.
+    const bool                       only_own = guests_.are_none_here();
+    const std::vector<unsigned int> &present  = guests_.present();
+    std::vector<ShellGuests::Block>  blocks;
+    memory.resize(only_own ? 0 : present.size());
+    for (unsigned int p = 0; p < memory.size(); ++p)
+      memory[p].resize(layout_.capsules()[present[p]].n_control_points(), 3);
+    for (unsigned int i = 0; !only_own && i < own.size(); ++i)
+      memory[guests_.place_of_own(i)] = own[i];
+    for (const ControlPoints &field : only_own ? own : memory)
+      blocks.push_back({const_cast<double *>(field.data()), std::size_t(field.size())}); // fields of own capsules are read only
+    guests_.update(blocks);
+    return only_own ? own : memory;
+  }
+
+
+  std::vector<double>
+  Coupling::at_guests(const std::vector<double> &own) const
+  {
+    std::vector<double>             result(guests_.present().size(), 0.);
+    std::vector<ShellGuests::Block> blocks;
+    for (unsigned int i = 0; i < own.size(); ++i)
+      result[guests_.place_of_own(i)] = own[i];
+    for (double &value : result)
+      blocks.push_back({&value, 1});
+    guests_.update(blocks);
+    return result;
   }
 
 
   void
   Coupling::set_point_forces(const ShellFields &g, std::vector<double> &forces) const
   {
+    const ShellFields &present = at_guests(g, fields_);
     forces.resize(3 * interpolation_->local_points().size());
-    for (unsigned int c = 0; c < n_capsules(); ++c)
-      transfers_[c].set_point_forces(g[c], forces);
+    for (unsigned int p = 0; p < transfers_.size(); ++p)
+      transfers_[p].set_point_forces(present[p], forces);
   }
 
 
   void
-  Coupling::extend(const ShellFields &g, ExtendedForces &forces) const
+  Coupling::extend(const ShellFields &g, ExtendedForces &forces, const std::vector<double> &pressure_jumps) const
   {
     set_point_forces(g, forces.at_points);
-    forces.normal_parts.assign(n_capsules(), 0.);
+    std::vector<double> normal_parts(g.size(), 0.);
+    forces.pressure_jumps = at_guests(pressure_jumps);
+    if (!jumps_->are_none())
+      for (unsigned int i = 0; i < g.size(); ++i)
+        normal_parts[i] = shells_[i]->volume_gradient().cwiseProduct(g[i]).sum() / shells_[i]->normal_square(); // m . f = v . g
+    forces.normal_parts = at_guests(normal_parts);
     if (jumps_->are_none())
       return;
-    for (unsigned int c = 0; c < n_capsules(); ++c)
-      {
-        const ShellConfiguration &shell = transfers_[c].shell();
-        forces.normal_parts[c]          = shell.volume_gradient().cwiseProduct(g[c]).sum() / shell.normal_square(); // m . f = v . g
-        for (std::size_t i = 3 * std::size_t(transfers_[c].range().begin); i < 3 * std::size_t(transfers_[c].range().end); ++i)
-          forces.at_points[i] -= forces.normal_parts[c] * normal_forces_[i];
-      }
+    for (unsigned int p = 0; p < transfers_.size(); ++p)
+      for (std::size_t i = 3 * std::size_t(transfers_[p].range().begin); i < 3 * std::size_t(transfers_[p].range().end); ++i)
+        forces.at_points[i] -= forces.normal_parts[p] * normal_forces_[i];
     jumps_->extend(forces);
   }
 
 
   void
-  Coupling::extend_whole(const ShellFields &g, ExtendedForces &forces) const
+  Coupling::extend_whole(const ShellFields &g, ExtendedForces &forces, const std::vector<double> &pressure_jumps) const
   {
-    extend(g, forces);
+    extend(g, forces, pressure_jumps);
     if (!jumps_->are_none())
       jumps_->complete(forces);
   }
 
 
   void
-  Coupling::extend_change(const FluidBlockVector &change, const ShellFields &g, ExtendedForces &forces) const
+  Coupling::extend_change(const FluidBlockVector &change, const ShellFields &g, ExtendedForces &forces, const std::vector<double> &pressure_jumps) const
   {
-    extend(g, forces);
+    extend(g, forces, pressure_jumps);
     if (jumps_->are_none() || contrast_.ratio == 1.)
       return;
     interpolation_->gradients(change, moments_);
@@ -201,32 +308,41 @@ namespace tanktread
     further_values_.assign(values_.size(), 0.);
     jumps_->add_velocities(fields, f, further_values_);
     // The transpose of P takes the multiple of v away that makes the further moments orthogonal to m = M^{-1} v.
-    std::vector<double> flux(n_capsules(), 0.);
-    for (unsigned int c = 0; c < n_capsules(); ++c)
-      for (std::size_t i = 3 * std::size_t(transfers_[c].range().begin); i < 3 * std::size_t(transfers_[c].range().end); ++i)
+    std::vector<double> flux(transfers_.size(), 0.);
+    for (unsigned int p = 0; p < transfers_.size(); ++p)
+      for (std::size_t i = 3 * std::size_t(transfers_[p].range().begin); i < 3 * std::size_t(transfers_[p].range().end); ++i)
         {
-          flux[c] += normal_forces_[i] * further_values_[i];
+          flux[p] += normal_forces_[i] * further_values_[i];
           values_[i] += further_values_[i];
         }
-    MPI_Allreduce(MPI_IN_PLACE, flux.data(), int(flux.size()), MPI_DOUBLE, MPI_SUM, space_->mesh.communicator());
-    ShellFields result = sum_moments(values_);
-    for (unsigned int c = 0; c < n_capsules(); ++c)
-      result[c] -= flux[c] / transfers_[c].shell().normal_square() * transfers_[c].shell().volume_gradient();
+    ShellFields result = sum_moments(values_, &flux);
+    for (unsigned int i = 0; i < result.size(); ++i)
+      result[i] -= flux[guests_.place_of_own(i)] / shells_[i]->normal_square() * shells_[i]->volume_gradient();
     return result;
   }
 
 
   ShellFields
-  Coupling::sum_moments(const std::vector<double> &values) const
+  Coupling::sum_moments(const std::vector<double> &values, std::vector<double> *const fluxes) const
   {
-    const Eigen::Index n = capsule_.n_control_points();
-    sums_.assign(3 * std::size_t(n) * n_capsules(), 0.);
-    for (unsigned int c = 0; c < n_capsules(); ++c)
-      transfers_[c].add_moments(values, &sums_[3 * std::size_t(n) * c]);
-    MPI_Allreduce(MPI_IN_PLACE, sums_.data(), int(sums_.size()), MPI_DOUBLE, MPI_SUM, space_->mesh.communicator());
+    std::size_t n = 0;
+    for (const ShellTransfer &transfer : transfers_)
+      n += 3 * std::size_t(transfer.capsule().n_control_points());
+    sums_.assign(n, 0.);
+    std::vector<ShellGuests::Block> blocks;
+    double                         *moments = sums_.data();
+    for (unsigned int p = 0; p < transfers_.size(); ++p)
+      {
+        blocks.push_back({moments, 3 * std::size_t(transfers_[p].capsule().n_control_points())});
+        if (fluxes != nullptr)
+          blocks.push_back({&(*fluxes)[p], 1});
+        transfers_[p].add_moments(values, moments);
+        moments += 3 * std::size_t(transfers_[p].capsule().n_control_points());
+      }
+    guests_.sum(blocks);
     ShellFields result;
-    for (unsigned int c = 0; c < n_capsules(); ++c)
-      result.push_back(Eigen::Map<const ControlPoints>(&sums_[3 * std::size_t(n) * c], n, 3));
+    for (unsigned int i = 0; i < shells_.size(); ++i)
+      result.push_back(Eigen::Map<const ControlPoints>(blocks[(fluxes == nullptr ? 1 : 2) * guests_.place_of_own(i)].values, shells_[i]->x().rows(), 3));
     return result;
   }
 
@@ -271,11 +387,12 @@ namespace tanktread
     if (flow.quadratic.norm_square() == 0.)
       return result;
     values_.assign(3 * interpolation_->local_points().size(), 0.);
-    for (unsigned int c = 0; c < n_capsules(); ++c)
-      transfers_[c].add_quadratic_velocity(flow, *shells[c], values_);
+    const ShellConfigurations present = present_shells(shells, guests_, {});
+    for (unsigned int p = 0; p < transfers_.size(); ++p)
+      transfers_[p].add_quadratic_velocity(flow, *present[p], values_);
     const ShellFields quadratic = density(sum_moments(values_));
-    for (unsigned int c = 0; c < n_capsules(); ++c)
-      result[c] += quadratic[c];
+    for (unsigned int i = 0; i < shells.size(); ++i)
+      result[i] += quadratic[i];
     return result;
   }
 
@@ -291,23 +408,12 @@ namespace tanktread
   }
 
 
-  std::vector<VelocityGradients>
-  Coupling::velocity_gradients(const FluidBlockVector &u) const
-  {
-    interpolation_->gradients(u, moments_);
-    std::vector<VelocityGradients> result;
-    for (const ShellTransfer &transfer : transfers_)
-      result.push_back(transfer.gradients(moments_));
-    return result;
-  }
-
-
   ShellFields
   Coupling::density(const ShellFields &f) const
   {
     ShellFields result;
-    for (const ControlPoints &field : f)
-      result.push_back(capsule_.density(field));
+    for (unsigned int i = 0; i < f.size(); ++i)
+      result.push_back(layout_.capsule(i).density(f[i]));
     return result;
   }
 
@@ -325,18 +431,18 @@ namespace tanktread
   {
     ExtendedForces forces;
     extend(density(f), forces);
-    spread(1., forces, std::vector<double>(n_capsules(), 0.), load);
+    spread(1., forces, load);
   }
 
 
   void
-  Coupling::spread(const double factor, const ExtendedForces &f, const std::vector<double> &pressure_jumps, FluidBlockVector &load) const
+  Coupling::spread(const double factor, const ExtendedForces &f, FluidBlockVector &load) const
   {
     values_.resize(f.at_points.size());
-    for (unsigned int c = 0; c < n_capsules(); ++c)
+    for (unsigned int p = 0; p < transfers_.size(); ++p)
       {
-        const double normal_part = f.normal_parts[c] + pressure_jumps[c];
-        for (std::size_t i = 3 * std::size_t(transfers_[c].range().begin); i < 3 * std::size_t(transfers_[c].range().end); ++i)
+        const double normal_part = f.normal_parts[p] + f.pressure_jumps[p];
+        for (std::size_t i = 3 * std::size_t(transfers_[p].range().begin); i < 3 * std::size_t(transfers_[p].range().end); ++i)
           values_[i] = factor * (f.at_points[i] + normal_part * normal_forces_[i]);
       }
     interpolation_->add_load(values_, {}, load);
@@ -352,22 +458,40 @@ namespace tanktread
     const std::size_t n = interpolation_->local_points().size();
     values_.resize(3 * n);
     moments_.resize(9 * n);
-    for (unsigned int c = 0; c < n_capsules(); ++c)
-      transfers_[c].set_point_moments(g[c], g0[c], dx[c], values_, moments_);
+    const ShellFields &g_present = at_guests(g, fields_), &dx_present = at_guests(dx, motions_), &g0_present = at_guests(g0, loads_);
+    for (unsigned int p = 0; p < transfers_.size(); ++p)
+      transfers_[p].set_point_moments(g_present[p], g0_present[p], dx_present[p], values_, moments_);
     interpolation_->add_load(values_, moments_, load);
   }
 
 
-  void
-  Coupling::gradient_matrix(const unsigned int c, const VelocityGradients &gradients, SparseMatrix &result) const
+  std::vector<SparseMatrix>
+  Coupling::gradient_matrices(const ShellConfigurations &shells, const UndisturbedFlow &flow, const FluidBlockVector *const u) const
   {
-    const AssemblyPattern &pattern = capsule_.coupling_surface().pattern();
-    if (result.nonZeros() == pattern.n_block_entries())
-      result.coeffs().setZero();
-    else
-      result = pattern.block_matrix();
-    transfers_[c].add_gradient_matrix(gradients, result);
-    MPI_Allreduce(MPI_IN_PLACE, result.valuePtr(), int(result.nonZeros()), MPI_DOUBLE, MPI_SUM, space_->mesh.communicator());
+    if (u != nullptr)
+      interpolation_->gradients(*u, moments_);
+    const ShellConfigurations       present = present_shells(shells, guests_, {});
+    std::vector<SparseMatrix>       matrices;
+    std::vector<ShellGuests::Block> blocks;
+    for (unsigned int p = 0; p < transfers_.size(); ++p)
+      {
+        const ShellTransfer  &transfer  = transfers_[p];
+        VelocityGradients     gradients = transfer.gradients(flow, *present[p]);
+        const Eigen::Matrix3d G         = gradient_at_middle(flow, present[p]->x());
+        if (u != nullptr)
+          gradients += transfer.gradients(moments_);
+        for (unsigned int component = 0; component < 9; ++component)
+          gradients.col(component).array() -= G(component / 3, component % 3);
+        matrices.push_back(transfer.capsule().coupling_surface().pattern().block_matrix());
+        transfer.add_gradient_matrix(gradients, matrices.back());
+      }
+    for (SparseMatrix &matrix : matrices)
+      blocks.push_back({matrix.valuePtr(), std::size_t(matrix.nonZeros())});
+    guests_.sum(blocks);
+    std::vector<SparseMatrix> result;
+    for (unsigned int i = 0; i < shells.size(); ++i)
+      result.push_back(std::move(matrices[guests_.place_of_own(i)]));
+    return result;
   }
 
 

@@ -35,16 +35,21 @@ namespace tanktread
 
 
   std::vector<InterfaceQuality>
-  interface_quality(const ShellJumps &jumps, const MPI_Comm communicator)
+  interface_quality(const Coupling &coupling)
   {
-    std::vector<double> areas(3 * std::size_t(jumps.n_shells()), 0.);
-    for (const JumpEnrichment &colour : jumps.colours())
+    std::vector<InterfaceQuality>   result(coupling.layout().n_own());
+    std::vector<double>             areas(3 * std::size_t(coupling.layout().n_capsules()), 0.);
+    std::vector<ShellGuests::Block> blocks;
+    if (coupling.jumps().are_none())
+      return result;
+    for (const JumpEnrichment &colour : coupling.jumps().colours())
       add_areas(colour, areas);
-    dealii::Utilities::MPI::sum(areas, communicator, areas);
-    std::vector<InterfaceQuality> result(jumps.n_shells());
-    for (std::size_t c = 0; c < result.size(); ++c)
-      if (const double *const of_shell = &areas[3 * c]; of_shell[0] > 0.)
-        result[c] = {of_shell[1] / of_shell[0], of_shell[2] / of_shell[0]};
+    for (const unsigned int c : coupling.guests().present())
+      blocks.push_back({&areas[3 * std::size_t(c)], 3});
+    coupling.guests().sum(blocks);
+    for (unsigned int i = 0; i < result.size(); ++i)
+      if (const double *const of_shell = &areas[3 * std::size_t(coupling.layout().own()[i])]; of_shell[0] > 0.)
+        result[i] = {of_shell[1] / of_shell[0], of_shell[2] / of_shell[0]};
     return result;
   }
 } // namespace tanktread

@@ -4,6 +4,7 @@
 #include <tanktread/coupling/shell_colours.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -101,32 +102,6 @@ namespace tanktread
       std::map<Place, std::vector<unsigned int>> bins_;
     };
   } // namespace
-
-
-  ShellBox
-  shell_box(const ControlPoints &X)
-  {
-    ShellBox result;
-    for (unsigned int d = 0; d < 3; ++d)
-      {
-        result.lower[d] = X.col(d).minCoeff();
-        result.upper[d] = X.col(d).maxCoeff();
-      }
-    return result;
-  }
-
-
-  ShellBox
-  joined(const ShellBox &first, const ShellBox &second)
-  {
-    ShellBox result;
-    for (unsigned int d = 0; d < 3; ++d)
-      {
-        result.lower[d] = std::min(first.lower[d], second.lower[d]);
-        result.upper[d] = std::max(first.upper[d], second.upper[d]);
-      }
-    return result;
-  }
 
 
   std::vector<unsigned int>

@@ -58,20 +58,24 @@ namespace tanktread
   } // namespace
 
 
+  Eigen::Matrix3d
+  gradient_at_middle(const UndisturbedFlow &flow, const ControlPoints &x)
+  {
+    const Eigen::RowVector3d   centre   = x.colwise().mean();
+    const dealii::Tensor<2, 3> gradient = flow.gradient({centre[0], centre[1], centre[2]});
+    Eigen::Matrix3d            result;
+    for (unsigned int c = 0; c < 3; ++c)
+      for (unsigned int d = 0; d < 3; ++d)
+        result(c, d) = gradient[c][d];
+    return result;
+  }
+
+
   ShellTransfer::ShellTransfer(const Capsule &capsule, const unsigned int first)
     : capsule_(capsule)
     , surface_(capsule.coupling_surface())
     , first_(first)
   {}
-
-
-  void
-  ShellTransfer::append_points(const ShellConfiguration &shell, std::vector<dealii::Point<3>> &points) const
-  {
-    const ControlPoints &X = shell.points();
-    for (Eigen::Index q = 0; q < X.rows(); ++q)
-      points.emplace_back(X(q, 0), X(q, 1), X(q, 2));
-  }
 
 
   void

@@ -5,6 +5,7 @@
 
 #include <tanktread/base/counts.h>
 #include <tanktread/base/exceptions.h>
+#include <tanktread/base/mpi_errors.h>
 #include <tanktread/base/target_clones.h>
 #include <tanktread/base/vector4.h>
 #include <tanktread/fluid/point_interpolation.h>
@@ -205,22 +206,31 @@ namespace tanktread
   void
   PointInterpolation::reinit(const std::vector<dealii::Point<3>> &points)
   {
+    reinit(points, points.size());
+  }
+
+
+  void
+  PointInterpolation::reinit(const std::vector<dealii::Point<3>> &points, const std::size_t n_all)
+  {
     local_points_.clear();
     unit_.clear();
     cells_.clear();
     const unsigned int n_points = index_count(points.size(), "points on the shells");
-    for (unsigned int q = 0; q < n_points; ++q)
-      {
-        const CellLocator::Location location = locator_.locate(points[q]);
-        if (location.cell < 0)
-          continue;
-        local_points_.push_back(q);
-        unit_.push_back(location.unit);
-        cells_.push_back(location.cell);
-      }
+    on_all_ranks(space_.mesh.communicator(), [&] {
+      for (unsigned int q = 0; q < n_points; ++q)
+        {
+          const CellLocator::Location location = locator_.locate(points[q]);
+          if (location.cell < 0)
+            continue;
+          local_points_.push_back(q);
+          unit_.push_back(location.unit);
+          cells_.push_back(location.cell);
+        }
+    });
     const std::size_t n_found = dealii::Utilities::MPI::sum(local_points_.size(), space_.mesh.communicator());
-    if (n_found != points.size())
-      throw NumericalError("Of " + std::to_string(points.size()) + " points on the shell " + std::to_string(n_found) + " were found in the fluid mesh.");
+    if (n_found != n_all)
+      throw NumericalError("Of " + std::to_string(n_all) + " points on the shells " + std::to_string(n_found) + " were found in the fluid mesh.");
     sort_by_cell();
   }
 

@@ -26,15 +26,16 @@ namespace tanktread
   std::vector<CapsuleObservables>
   observe(Scene &scene, const State &state, const ShellFields &velocities)
   {
-    const ShellConfigurations       shells     = scene.level().shells(state);
-    const Capsule                  &capsule    = scene.capsule();
-    const UndisturbedFlow          &flow       = scene.level().flow();
-    const double                    ratio      = scene.level().liquids().viscosity_ratio;
-    const double                    shear_rate = flow.linear[0][2]; // of simple shear; elsewhere not read
-    std::vector<CapsuleObservables> result;
+    const ShellConfigurations        shells     = scene.level().shells(state);
+    const UndisturbedFlow           &flow       = scene.level().flow();
+    const double                     ratio      = scene.level().liquids().viscosity_ratio;
+    const double                     shear_rate = flow.linear[0][2]; // of simple shear; elsewhere not read
+    const std::vector<Shell::Energy> energies   = scene.elasticity().energies(positions(state));
+    std::vector<CapsuleObservables>  result;
     for (std::size_t c = 0; c < shells.size(); ++c)
       {
         const CapsuleState &of_capsule = state.capsules[c];
+        const Capsule      &capsule    = scene.capsule(c);
         CapsuleObservables  o;
         o.ellipsoid     = inertia_ellipsoid(capsule.surface(), of_capsule.x);
         o.theta_over_pi = o.ellipsoid.taylor_parameter < 1e-4 ? not_a_number : o.ellipsoid.inclination / dealii::numbers::PI;
@@ -42,7 +43,7 @@ namespace tanktread
         o.volume        = shells[c]->volume();
         o.volume_error  = o.volume / capsule.volume() - 1.;
         o.area          = surface_area(capsule.surface(), of_capsule.x);
-        o.energy        = scene.elasticity().energy(of_capsule.x);
+        o.energy        = energies[c];
         o.power         = of_capsule.force.cwiseProduct(velocities[c]).sum();
         o.pressure_jump = of_capsule.pressure_jump;
         o.stress        = particle_stress(of_capsule.x, of_capsule.force); // with one viscosity the forces are all of it
@@ -68,6 +69,9 @@ namespace tanktread
         result.stress += capsule.stress / volume;
         result.volume_fraction += capsule.volume / volume;
       }
+    result.volume_fraction = scene.layout().sum(result.volume_fraction);
+    for (unsigned int i = 0; i < 9; ++i)
+      result.stress.data()[i] = scene.layout().sum(result.stress.data()[i]);
     const UndisturbedFlow     &flow     = scene.level().flow();
     const dealii::Tensor<2, 3> E        = 0.5 * (flow.linear + transpose(flow.linear));
     double                     together = 0.;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: control points that move along the shells, step by step.
 
-#include <deal.II/base/mpi.h>
-
 #include <tanktread/simulation/points_along.h>
 #include <tanktread/surface/mesh_quality.h>
 
@@ -19,12 +17,20 @@ namespace tanktread
   } // namespace
 
 
+  PointsAlong::PointsAlong(const Scene &scene)
+    : scene_(scene)
+  {
+    for (unsigned int k = 0; k < scene.capsules().n_kinds(); ++k)
+      even_meshes_.emplace_back(scene.capsules().kind(k));
+  }
+
+
   ShellFields
   PointsAlong::velocity(const ShellConfigurations &shells, const double length) const
   {
     ShellFields result;
     for (std::size_t c = 0; c < shells.size(); ++c)
-      result.push_back(even_mesh_.velocity(*shells[c], velocity_[c], 1. / (steps_to_relax * length)));
+      result.push_back(even_meshes_[scene_.capsules().kind_of(scene_.layout().own()[c])].velocity(*shells[c], velocity_[c], 1. / (steps_to_relax * length)));
     return result;
   }
 
@@ -32,13 +38,11 @@ namespace tanktread
   double
   PointsAlong::longest_step(const Scene &scene, const State &state)
   {
-    const double bending_modulus = scene.description().moduli.bending_modulus;
-    double       radius          = std::numeric_limits<double>::infinity();
-    if (bending_modulus == 0.)
-      return radius;
-    for (const CapsuleState &capsule : state.capsules)
-      radius = std::min(radius, smallest_radius_of_curvature(scene.capsule().surface(), capsule.x));
-    return longest_step_factor * dealii::Utilities::MPI::broadcast(scene.communicator(), radius, 0) / bending_modulus;
+    double result = std::numeric_limits<double>::infinity();
+    for (unsigned int i = 0; i < state.capsules.size(); ++i)
+      if (const double bending_modulus = scene.description().kind(scene.layout().own()[i]).moduli.bending_modulus; bending_modulus > 0.)
+        result = std::min(result, longest_step_factor * smallest_radius_of_curvature(scene.capsule(i).surface(), state.capsules[i].x) / bending_modulus);
+    return -scene.layout().max(-result);
   }
 
 

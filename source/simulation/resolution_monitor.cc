@@ -19,6 +19,14 @@ namespace tanktread
       return result;
     }
 
+    /** The largest of the capsules of all ranks; not a number where it is known of none. Collective. */
+    double
+    worst_of_all(const double of_own, const ShellLayout &layout)
+    {
+      const double result = layout.max(std::isnan(of_own) ? -std::numeric_limits<double>::max() : of_own);
+      return result == -std::numeric_limits<double>::max() ? std::numeric_limits<double>::quiet_NaN() : result;
+    }
+
     double &
     of(ConcernFigures &figures, const Concern concern)
     {
@@ -31,35 +39,38 @@ namespace tanktread
     : scene_(scene)
     , memory_(memory)
     , log_(log)
-    , mesh_quality_(scene.capsule().topology())
   {
-    const FluidMesh &mesh     = scene.fluid().mesh();
-    context_.finest_cell      = mesh.cell_size(mesh.finest_level());
-    context_.initial_triangle = worst_triangle(scene.capsule().topology().faces, scene.capsule().initial());
-    context_.control_points   = scene.capsule().n_control_points();
-    context_.bends            = parameters.scene.bending_modulus() > 0. || parameters.shell.thickness > 0.;
-    context_.moments_alone    = context_.bends && parameters.shell.form == BendingForm::moment_only && !parameters.control_mesh_stays_even();
-    context_.is_explicit      = parameters.solver.coupling == TimeCoupling::explicit_euler;
-    context_.order            = order(parameters.time.scheme);
-    context_.step             = parameters.time.step;
-    context_.steps_are_fixed  = parameters.time.tolerance == 0.;
-    context_.at_rest          = scene.description().liquids.flow.amplitude.is_zero();
+    context_.control_points = std::numeric_limits<unsigned int>::max();
+    for (unsigned int k = 0; k < scene.capsules().n_kinds(); ++k)
+      {
+        const Capsule &kind = scene.capsules().kind(k);
+        mesh_qualities_.emplace_back(kind.topology());
+        context_.initial_triangle = std::min(context_.initial_triangle, worst_triangle(kind.topology().faces, kind.initial()));
+        context_.control_points   = std::min(context_.control_points, kind.n_control_points());
+      }
+    const FluidMesh &mesh    = scene.fluid().mesh();
+    context_.finest_cell     = mesh.cell_size(mesh.finest_level());
+    context_.bends           = parameters.scene.bending_modulus() > 0. || parameters.shell.thickness > 0.;
+    context_.moments_alone   = context_.bends && parameters.shell.form == BendingForm::moment_only && !parameters.control_mesh_stays_even();
+    context_.is_explicit     = parameters.solver.coupling == TimeCoupling::explicit_euler;
+    context_.order           = order(parameters.time.scheme);
+    context_.step            = parameters.time.step;
+    context_.steps_are_fixed = parameters.time.tolerance == 0.;
+    context_.at_rest         = scene.description().liquids.flow.amplitude.is_zero();
   }
 
 
   void
   ResolutionMonitor::measure(const State &state, std::vector<CapsuleObservables> &capsules) const
   {
-    const Timings::Scope       scope(scene_.timings(), "- resolution");
-    const ShellJumps          &jumps      = scene_.coupling().jumps();
-    const ShellConfigurations &shells     = scene_.level().shells(state);
-    const auto                 interfaces = interface_quality(jumps, scene_.communicator());
+    const Timings::Scope                scope(scene_.timings(), "- resolution");
+    const ShellConfigurations          &shells     = scene_.level().shells(state);
+    const std::vector<InterfaceQuality> interfaces = interface_quality(scene_.coupling());
     for (std::size_t c = 0; c < capsules.size(); ++c)
       {
-        capsules[c].shape    = mesh_quality_(state.capsules[c].x);
-        capsules[c].self_gap = smallest_self_gap(*shells[c], context_.finest_cell);
-        if (!jumps.are_none())
-          capsules[c].interface = interfaces[c];
+        capsules[c].shape     = mesh_qualities_[scene_.capsules().kind_of(scene_.layout().own()[c])](state.capsules[c].x);
+        capsules[c].self_gap  = smallest_self_gap(*shells[c], context_.finest_cell);
+        capsules[c].interface = interfaces[c];
       }
   }
 
@@ -69,7 +80,7 @@ namespace tanktread
   {
     const Timings::Scope scope(scene_.timings(), "- resolution");
     ConcernFigures       figures   = unknown_figures();
-    double               left_over = 0., power = std::abs(step.dissipation);
+    double               left_over = 0., of_shells = 0.;
     for (const CapsuleObservables &o : capsules)
       {
         of(figures, Concern::triangle)      = std::fmin(of(figures, Concern::triangle), o.shape.worst_triangle);
@@ -79,8 +90,15 @@ namespace tanktread
         of(figures, Concern::folds)         = std::fmax(of(figures, Concern::folds), o.interface.folded);
         of(figures, Concern::self_gap)      = std::fmin(of(figures, Concern::self_gap), o.self_gap);
         left_over += std::abs(o.energy_residual);
-        power += std::abs(o.power);
+        of_shells += std::abs(o.power);
       }
+    const ShellLayout &layout = scene_.layout();
+    for (const Concern least : {Concern::triangle, Concern::curvature, Concern::self_gap})
+      of(figures, least) = -worst_of_all(-of(figures, least), layout);
+    for (const Concern most : {Concern::wrinkles, Concern::without_jumps, Concern::folds})
+      of(figures, most) = worst_of_all(of(figures, most), layout);
+    left_over                 = layout.sum(left_over);
+    const double power        = std::abs(step.dissipation) + layout.sum(of_shells);
     of(figures, Concern::gap) = scene_.gap(state).gap;
     if (!scene_.description().liquids.unbounded) // there the faces are no walls
       of(figures, Concern::wall) = scene_.distance_from_faces(state);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: the energy of shells in a liquid at rest, which can only fall.
 
-#include <deal.II/base/mpi.h>
-
 #include <tanktread/simulation/rest_energy.h>
 
 #include <algorithm>
@@ -17,7 +15,9 @@ namespace tanktread
     is_known(const SceneDescription &scene)
     {
       // The moments alone are not the derivative of an energy.
-      const bool has_energy = scene.shell.form == BendingForm::variational || scene.moduli.bending_modulus == 0.;
+      const bool has_energy = std::all_of(scene.kinds.begin(), scene.kinds.end(), [](const CapsuleKind &kind) {
+        return kind.shell.form == BendingForm::variational || kind.moduli.bending_modulus == 0.;
+      });
       return scene.liquids.flow.amplitude.is_zero() && scene.liquids.reynolds_number == 0. && has_energy;
     }
 
@@ -26,12 +26,9 @@ namespace tanktread
     energy(const Scene &scene, const ShellFields &x)
     {
       double result = 0.;
-      for (const ControlPoints &of_capsule : x)
-        {
-          const Shell::Energy parts = scene.elasticity().energy(of_capsule);
-          result += parts.membrane + parts.bending;
-        }
-      return dealii::Utilities::MPI::broadcast(scene.communicator(), result, 0);
+      for (const Shell::Energy &of_capsule : scene.elasticity().energies(x))
+        result += of_capsule.membrane + of_capsule.bending;
+      return scene.layout().sum(result);
     }
   } // namespace
 
@@ -39,8 +36,9 @@ namespace tanktread
   void
   RestEnergy::start(const Scene &scene, const ShellFields &x)
   {
-    const ShellModuli &moduli = scene.description().moduli;
-    scale                     = moduli.bending_modulus > 0. ? moduli.bending_modulus : moduli.surface_young_modulus;
+    scale = 0.;
+    for (const CapsuleKind &kind : scene.description().kinds)
+      scale = std::max(scale, kind.moduli.bending_modulus > 0. ? kind.moduli.bending_modulus : kind.moduli.surface_young_modulus);
     add(scene, x);
     scale = std::max(scale, std::abs(last));
   }

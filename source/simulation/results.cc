@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: what a run leaves in its folder.
 
+#include <deal.II/base/mpi.h>
+
 #include <Eigen/SparseCholesky>
 #include <tanktread/base/exceptions.h>
 #include <tanktread/base/mpi_errors.h>
 #include <tanktread/base/output_file.h>
 #include <tanktread/fluid/field_output.h>
+#include <tanktread/simulation/interior_pressure.h>
 #include <tanktread/simulation/results.h>
 #include <tanktread/surface/contour.h>
-#include <tanktread/surface/interior.h>
 #include <tanktread/surface/surface_operators.h>
 
-#include <cmath>
 #include <iomanip>
+#include <limits>
+#include <map>
+#include <set>
 #include <sstream>
 
 namespace tanktread
@@ -47,6 +51,9 @@ namespace tanktread
     /** With so many subdivisions the polygon that is cut is close to the smooth surface. */
     constexpr unsigned int contour_subdivisions = 2;
 
+    /** Contents of one summary: capsule, mode, quantities. */
+    using NumberedSummary = std::pair<unsigned int, std::pair<std::string, Row>>;
+
     /** Points of one shell and fields there. */
     struct ShellPoints
     {
@@ -55,7 +62,7 @@ namespace tanktread
     };
 
     ShellPoints
-    shell_points(const Capsule &capsule, const LimitPicture &picture, const ControlPoints &x, const ControlPoints &velocity)
+    shell_points(const Capsule &capsule, const LimitPicture &picture, const ControlPoints &x, const ControlPoints &velocity, const bool with_curvature)
     {
       const SparseMatrix                                      &limit   = picture.S();
       const SubdivisionSurface                                &surface = capsule.surface();
@@ -73,8 +80,11 @@ namespace tanktread
                           {"velocity", limit * velocity},
                           {"force_density", limit * Eigen::MatrixXd(mass.solve(Eigen::MatrixXd(f)))}}};
       result.fields.emplace_back("area_stretch", projected(weights.cwiseQuotient(capsule.shell().reference_weights())));
-      if (surface.derivatives() == Derivatives::second)
-        result.fields.emplace_back("mean_curvature", projected(mean_curvature(surface, x)));
+      if (with_curvature)
+        result.fields.emplace_back("mean_curvature",
+                                   surface.derivatives() == Derivatives::second
+                                     ? projected(mean_curvature(surface, x))
+                                     : Eigen::VectorXd(Eigen::VectorXd::Constant(limit.rows(), std::numeric_limits<double>::quiet_NaN())));
       return result;
     }
 
@@ -128,76 +138,142 @@ namespace tanktread
   } // namespace
 
 
-  Results::Results(const std::string  &folder,
-                   const TriangleMesh &topology,
-                   const unsigned int  n_capsules,
-                   const unsigned int  surface_subdivisions,
-                   const MPI_Comm      communicator)
+  Results::Results(const std::string &folder, const ShellLayout &layout, const unsigned int surface_subdivisions)
     : folder_(folder)
-    , communicator_(communicator)
-    , n_capsules_(n_capsules)
+    , layout_(layout)
+    , communicator_(layout.communicator())
+    , n_capsules_(layout.n_capsules())
     , shell_series_(folder + "/shell.pvd")
     , fluid_series_(folder + "/fluid.pvd")
   {
-    on_first_rank(communicator, [&] {
-      for (unsigned int c = 0; c < n_capsules; ++c)
+    for (unsigned int k = 0; k < layout.capsules().n_kinds(); ++k)
+      {
+        surface_pictures_.emplace_back(layout.capsules().kind(k).topology(), surface_subdivisions);
+        contour_pictures_.emplace_back(layout.capsules().kind(k).topology(), contour_subdivisions);
+      }
+    on_first_rank(communicator_, [&] {
+      std::vector<std::string> columns = names(history_row({}, {})), of_contours = {"time", "x", "z"};
+      const unsigned int       n_files = n_capsules_ > most_files ? 1 : n_capsules_;
+      if (n_files < n_capsules_)
         {
-          const std::string end = suffix(c, n_capsules) + ".csv";
-          histories_.push_back(std::make_unique<CsvWriter>(folder + "/history" + end, names(history_row({}, {}))));
-          contours_.push_back(std::make_unique<CsvWriter>(folder + "/contours" + end, std::vector<std::string>{"time", "x", "z"}));
+          columns.push_back("capsule");
+          of_contours.push_back("capsule");
         }
-      suspension_      = std::make_unique<CsvWriter>(folder + "/suspension.csv", names(suspension_row({}, {})));
-      surface_picture_ = std::make_unique<LimitPicture>(topology, surface_subdivisions);
-      contour_picture_ = std::make_unique<LimitPicture>(topology, contour_subdivisions);
+      for (unsigned int c = 0; c < n_files; ++c)
+        {
+          const std::string end = suffix(c, n_files) + ".csv";
+          histories_.push_back(std::make_unique<CsvWriter>(folder + "/history" + end, columns));
+          contours_.push_back(std::make_unique<CsvWriter>(folder + "/contours" + end, of_contours));
+        }
+      suspension_ = std::make_unique<CsvWriter>(folder + "/suspension.csv", names(suspension_row({}, {})));
     });
   }
 
 
+  Results::History
+  Results::history(const ShellLayout &layout, const StepObservables &step, const std::vector<CapsuleObservables> &capsules)
+  {
+    std::vector<double> of_own;
+    for (const CapsuleObservables &capsule : capsules)
+      {
+        const std::vector<double> row = values(history_row(step, capsule));
+        of_own.insert(of_own.end(), row.begin(), row.end());
+      }
+    return layout.gathered(of_own, history_row(step, {}).size());
+  }
+
+
   void
-  Results::add_history(const StepObservables &step, const std::vector<CapsuleObservables> &capsules, const SuspensionObservables &suspension)
+  Results::add_history(const StepObservables &step, const History &history, const SuspensionObservables &suspension)
   {
     on_first_rank(communicator_, [&] {
+      const std::size_t n = history.size() / n_capsules_;
       for (unsigned int c = 0; c < n_capsules_; ++c)
-        histories_[c]->row(values(history_row(step, capsules[c])));
+        {
+          std::vector<double> row(history.begin() + n * c, history.begin() + n * (c + 1));
+          if (n_capsules_ > most_files)
+            row.push_back(c + 1);
+          histories_[n_capsules_ > most_files ? 0 : c]->row(row);
+        }
       suspension_->row(values(suspension_row(step, suspension)));
     });
   }
 
 
-  void
-  Results::write_shells(const std::string &file, const Capsule &capsule, const State &state, const ShellFields &velocities) const
+  std::string
+  Results::write_shells(const std::string &stem, const State &state, const ShellFields &velocities) const
   {
-    ShellPoints                     all;
-    std::vector<std::array<int, 3>> faces;
-    const int                       n_points = int(surface_picture_->S().rows());
-    Eigen::VectorXd                 number(n_points * Eigen::Index(n_capsules_));
-    for (unsigned int c = 0; c < n_capsules_; ++c)
-      {
-        append(shell_points(capsule, *surface_picture_, state.capsules[c].x, velocities[c]), all);
-        const int first = int(c) * n_points;
-        for (const auto &face : surface_picture_->faces())
-          faces.push_back({face[0] + first, face[1] + first, face[2] + first});
-        number.segment(first, n_points).setConstant(c + 1);
-      }
-    if (n_capsules_ > 1)
-      all.fields.emplace_back("capsule", number);
-    write_surface_vtu(file, all.positions, faces, all.fields);
+    bool has_curvature = false;
+    for (unsigned int k = 0; k < layout_.capsules().n_kinds(); ++k)
+      has_curvature = has_curvature || layout_.capsules().kind(k).surface().derivatives() == Derivatives::second;
+    const bool is_one_file = layout_.n_teams() == 1;
+    const auto piece       = [&](const unsigned int team) { return stem + (is_one_file ? "" : "." + std::to_string(team)) + ".vtu"; };
+    on_all_ranks(communicator_, [&] {
+      if (!layout_.leads() || layout_.n_own() == 0)
+        return;
+      ShellPoints                     all;
+      std::vector<std::array<int, 3>> faces;
+      std::vector<double>             number;
+      for (unsigned int i = 0; i < layout_.n_own(); ++i)
+        {
+          const LimitPicture &picture = surface_pictures_[layout_.capsules().kind_of(layout_.own()[i])];
+          const int           first   = int(number.size());
+          append(shell_points(layout_.capsule(i), picture, state.capsules[i].x, velocities[i], has_curvature), all);
+          for (const auto &face : picture.faces())
+            faces.push_back({face[0] + first, face[1] + first, face[2] + first});
+          number.resize(number.size() + picture.S().rows(), layout_.own()[i] + 1);
+        }
+      if (n_capsules_ > 1)
+        all.fields.emplace_back("capsule", Eigen::VectorXd::Map(number.data(), number.size()));
+      write_surface_vtu(folder_ + "/" + piece(layout_.team_of_rank(layout_.rank())), all.positions, faces, all.fields);
+    });
+    if (is_one_file)
+      return piece(0);
+    on_first_rank(communicator_, [&] {
+      std::vector<std::pair<std::string, unsigned int>> fields = {{"normals", 3}, {"velocity", 3}, {"force_density", 3}, {"area_stretch", 1}};
+      if (has_curvature)
+        fields.emplace_back("mean_curvature", 1);
+      fields.emplace_back("capsule", 1);
+      std::set<unsigned int> teams;
+      for (unsigned int c = 0; c < n_capsules_; ++c)
+        teams.insert(layout_.team_of(c));
+      std::vector<std::string> pieces;
+      for (const unsigned int team : teams)
+        pieces.push_back(piece(team));
+      write_surface_pvtu(folder_ + "/" + stem + ".pvtu", pieces, fields);
+    });
+    return stem + ".pvtu";
   }
 
 
   void
-  Results::write_contours(const double time, const ShellFields &x)
+  Results::add_contours(const double time, const ShellFields &x)
   {
-    for (unsigned int c = 0; c < n_capsules_; ++c)
+    std::vector<std::pair<unsigned int, std::vector<double>>> of_own; // capsule; x and z of each point
+    for (unsigned int i = 0; layout_.leads() && i < x.size(); ++i)
       {
-        const Eigen::RowVector3d middle(0., x[c].col(1).mean(), 0.);
-        const ControlPoints      limit = contour_picture_->S() * (x[c].rowwise() - middle);
-        TriangleMesh             mesh{{}, contour_picture_->faces()};
-        for (Eigen::Index i = 0; i < limit.rows(); ++i)
-          mesh.vertices.emplace_back(limit.row(i));
+        const LimitPicture      &picture = contour_pictures_[layout_.capsules().kind_of(layout_.own()[i])];
+        const Eigen::RowVector3d middle(0., x[i].col(1).mean(), 0.);
+        const ControlPoints      limit = picture.S() * (x[i].rowwise() - middle);
+        TriangleMesh             mesh{{}, picture.faces()};
+        for (Eigen::Index q = 0; q < limit.rows(); ++q)
+          mesh.vertices.emplace_back(limit.row(q));
+        of_own.emplace_back(layout_.own()[i], std::vector<double>());
         for (const Eigen::Vector2d &point : shear_plane_contour(mesh))
-          contours_[c]->row({time, point[0], point[1]});
+          of_own.back().second.insert(of_own.back().second.end(), point.data(), point.data() + 2);
       }
+    const auto by_rank = dealii::Utilities::MPI::gather(communicator_, of_own);
+    on_first_rank(communicator_, [&] {
+      std::map<unsigned int, std::vector<double>> all;
+      for (const auto &of_rank : by_rank)
+        all.insert(of_rank.begin(), of_rank.end());
+      for (const auto &[c, points] : all)
+        for (std::size_t i = 0; i < points.size(); i += 2)
+          if (n_capsules_ > most_files)
+            contours_[0]->row({time, points[i], points[i + 1], c + 1.});
+          else
+            contours_[c]->row({time, points[i], points[i + 1]});
+    });
   }
 
 
@@ -206,30 +282,12 @@ namespace tanktread
   {
     std::ostringstream number;
     number << std::setw(4) << std::setfill('0') << n_fields_;
-    const Capsule        &capsule = scene.capsule();
-    const Box            &box     = scene.description().box;
-    std::vector<Interior> interiors;
-    for (const CapsuleState &of_capsule : state.capsules)
-      interiors.emplace_back(capsule.surface(), of_capsule.x);
-    const auto interior_pressure = [&](const dealii::Point<3> &point) {
-      for (std::size_t c = 0; c < interiors.size(); ++c)
-        {
-          // The periodic image of the point that is nearest to the capsule.
-          Eigen::Vector3d y(point[0], point[1], point[2]);
-          for (unsigned int d = 0; d < 3; ++d)
-            if (box.is_periodic(d))
-              y[d] -= box.side[d] * std::round((y[d] - interiors[c].centre()[d]) / box.side[d]);
-          if (interiors[c].contains(y))
-            return state.capsules[c].pressure_jump;
-        }
-      return 0.;
-    };
-    const std::string fluid_file =
+    const InteriorPressure interior_pressure(scene, state);
+    const std::string      fluid_file =
       write_fluid_fields(folder_, "fluid", n_fields_, scene.level().whole_space(), scene.level().whole_fields(state), scene.level().flow(), interior_pressure);
+    const std::string shell_file = write_shells("shell_" + number.str(), state, velocities);
+    add_contours(time, positions(state));
     on_first_rank(communicator_, [&] {
-      const std::string shell_file = "shell_" + number.str() + ".vtu";
-      write_shells(folder_ + "/" + shell_file, capsule, state, velocities);
-      write_contours(time, positions(state));
       shell_series_.add(time, shell_file);
       fluid_series_.add(time, fluid_file);
     });
@@ -238,24 +296,24 @@ namespace tanktread
 
 
   void
-  Results::add_contours(const double time, const ShellFields &x)
-  {
-    on_first_rank(communicator_, [&] { write_contours(time, x); });
-  }
-
-
-  void
   Results::write_summary(const std::string &outcome, const std::vector<MotionSummary> &capsules, const Row &of_run) const
   {
+    std::vector<NumberedSummary> of_own;
+    for (std::size_t i = 0; layout_.leads() && i < capsules.size(); ++i)
+      of_own.emplace_back(layout_.own()[i], std::make_pair(word(capsules[i].mode), summary_row(capsules[i])));
+    const auto by_rank = dealii::Utilities::MPI::gather(communicator_, of_own);
     on_first_rank(communicator_, [&] {
+      std::map<unsigned int, std::pair<std::string, Row>> all;
+      for (const auto &of_rank : by_rank)
+        all.insert(of_rank.begin(), of_rank.end());
       std::ostringstream file;
       file << "quantity,value\noutcome," << outcome << '\n' << std::setprecision(10);
-      for (std::size_t c = 0; c < capsules.size(); ++c)
+      for (const auto &[c, summary] : all)
         {
-          const std::string number = suffix(c, capsules.size());
-          file << "mode" << number << ',' << word(capsules[c].mode) << '\n';
-          for (const auto &[quantity, value] : summary_row(capsules[c]))
-            file << quantity << number << ',' << value << '\n';
+          const std::string end = suffix(c, n_capsules_);
+          file << "mode" << end << ',' << summary.first << '\n';
+          for (const auto &[quantity, value] : summary.second)
+            file << quantity << end << ',' << value << '\n';
         }
       for (const auto &[quantity, value] : of_run)
         file << quantity << ',' << value << '\n';
@@ -265,13 +323,11 @@ namespace tanktread
 
 
   std::string
-  Results::write_failed(Scene &scene, const State &state) const
+  Results::write_failed(const State &state) const
   {
-    const std::string file = folder_ + "/failed_shell.vtu";
-    ShellFields       rest;
+    ShellFields rest;
     for (const CapsuleState &capsule : state.capsules)
       rest.push_back(ControlPoints::Zero(capsule.x.rows(), 3));
-    on_first_rank(communicator_, [&] { write_shells(file, scene.capsule(), state, rest); });
-    return file;
+    return folder_ + "/" + write_shells("failed_shell", state, rest);
   }
 } // namespace tanktread

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <sstream>
 #include <utility>
 
@@ -25,12 +26,13 @@ namespace tanktread
       result.liquids.viscosity_ratio = parameters.scene.viscosity_ratio;
       result.liquids.reynolds_number = parameters.scene.reynolds_number;
       result.liquids.unbounded       = parameters.scene.boundary == Boundary::unbounded;
-      result.shape                   = make_capsule(parameters.capsule, std::min(parameters.shell_mesh.level, max_level));
-      result.stress_free             = make_stress_free_shape(parameters.capsule, result.shape);
+      CapsuleKind &kind              = result.kinds[0];
+      kind.shape                     = make_capsule(parameters.capsule, std::min(parameters.shell_mesh.level, max_level));
+      kind.stress_free               = make_stress_free_shape(parameters.capsule, kind.shape);
       result.places                  = parameters.placement.places();
-      result.shell                   = parameters.shell;
-      result.moduli                  = {parameters.scene.surface_young_modulus(), parameters.scene.bending_modulus()};
-      result.shell_quadrature        = parameters.shell_mesh.quadrature;
+      kind.shell                     = parameters.shell;
+      kind.moduli                    = {parameters.scene.surface_young_modulus(), parameters.scene.bending_modulus()};
+      kind.shell_quadrature          = parameters.shell_mesh.quadrature;
       result.fluid_mesh              = parameters.fluid_mesh;
       result.solver                  = parameters.solver;
       return result;
@@ -42,9 +44,9 @@ namespace tanktread
     {
       static const char *const axes   = "xyz";
       Eigen::RowVector3d       extent = Eigen::RowVector3d::Zero();
-      for (const Place &place : scene.places)
+      for (unsigned int c = 0; c < scene.places.size(); ++c)
         {
-          const ControlPoints x = placed(scene.shape.control_points, place);
+          const ControlPoints x = placed(scene.kind(c).shape.control_points, scene.places[c]);
           extent                = extent.cwiseMax(x.colwise().maxCoeff() - x.colwise().minCoeff());
         }
       for (unsigned int d = 0; d < 3; ++d)
@@ -64,19 +66,23 @@ namespace tanktread
     void
     check_places(const SceneDescription &scene, const double h)
     {
-      const CapsuleQuadrature rule{triangle_quadrature(3), triangle_quadrature(12), Derivatives::second};
-      const Capsule           capsule(scene.shape, rule, scene.shell, scene.moduli, scene.stress_free);
-      ShellFields             x;
-      std::array<double, 3>   periods, half_sides;
-      for (const Place &place : scene.places)
-        x.push_back(placed(scene.shape.control_points, place));
+      const CapsuleQuadrature                     rule{triangle_quadrature(3), triangle_quadrature(12), Derivatives::second};
+      std::vector<std::unique_ptr<const Capsule>> kinds;
+      ShellConfigurations                         shells;
+      std::array<double, 3>                       periods, half_sides;
+      for (const CapsuleKind &kind : scene.kinds)
+        kinds.push_back(std::make_unique<Capsule>(kind.shape, rule, kind.shell, kind.moduli, kind.stress_free));
+      for (unsigned int c = 0; c < scene.places.size(); ++c)
+        {
+          const Capsule &capsule = *kinds[scene.kind_of.empty() ? 0 : scene.kind_of[c]];
+          shells.push_back(std::make_shared<ShellConfiguration>(capsule, placed(capsule.initial(), scene.places[c])));
+        }
       for (unsigned int d = 0; d < 3; ++d)
         {
           periods[d]    = scene.box.is_periodic(d) ? scene.box.side[d] : std::numeric_limits<double>::infinity();
           half_sides[d] = scene.box.is_periodic(d) ? std::numeric_limits<double>::infinity() : 0.5 * scene.box.side[d];
         }
-      const ShellConfigurations shells = shell_configurations(capsule, x);
-      std::ostringstream        message;
+      std::ostringstream message;
       if (const double distance = smallest_distance_from_faces(shells, half_sides); distance <= 0.)
         {
           message << "Capsule/Centres: a capsule reaches " << -distance << " a beyond a face of the box with prescribed velocity; allowed: inside.";

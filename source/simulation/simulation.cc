@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <sstream>
 #include <utility>
 
@@ -141,7 +142,7 @@ namespace tanktread
       log_.line(accuracy_text(parameters_));
     if (!moved_to.empty())
       log_.line("The folder held a former run, now in " + moved_to + ".");
-    results_ = std::make_unique<Results>(folder, scene_.capsule().topology(), state_.capsules.size(), parameters_.output.surface_subdivisions, communicator_);
+    results_ = std::make_unique<Results>(folder, scene_.layout(), parameters_.output.surface_subdivisions);
   }
 
 
@@ -151,14 +152,17 @@ namespace tanktread
     StepResult first;
     first.linear_iterations = first_flow();
 
-    const FluidMesh   &mesh    = scene_.fluid().mesh();
-    const Capsule     &capsule = scene_.capsule();
+    const FluidMesh   &mesh = scene_.fluid().mesh();
     std::ostringstream text;
-    text << "Shell: " << capsule.n_control_points() << " control points, " << capsule.surface().n_points() << " quadrature points, "
-         << capsule.coupling_surface().n_points() << " coupling points. Fluid: cells from " << mesh.cell_size(mesh.coarsest_level()) << " a to "
-         << mesh.cell_size(mesh.finest_level()) << " a, " << mesh.triangulation().n_global_active_cells() << " now, with "
-         << scene_.fluid().space().velocity->partitioner()->size() << " velocity and " << scene_.fluid().space().pressure->partitioner()->size()
-         << " pressure unknowns.";
+    for (unsigned int k = 0; k < scene_.capsules().n_kinds(); ++k)
+      {
+        const Capsule &kind = scene_.capsules().kind(k);
+        text << "Shell" << (k == 0 ? "" : " of kind " + std::to_string(k + 1)) << ": " << kind.n_control_points() << " control points, "
+             << kind.surface().n_points() << " quadrature points, " << kind.coupling_surface().n_points() << " coupling points. ";
+      }
+    text << "Fluid: cells from " << mesh.cell_size(mesh.coarsest_level()) << " a to " << mesh.cell_size(mesh.finest_level()) << " a, "
+         << mesh.triangulation().n_global_active_cells() << " now, with " << scene_.fluid().space().velocity->partitioner()->size() << " velocity and "
+         << scene_.fluid().space().pressure->partitioner()->size() << " pressure unknowns.";
     log_.line(text.str());
     record(first, observe_capsules(), false);
   }
@@ -169,8 +173,8 @@ namespace tanktread
   {
     double fastest = 0.;
     for (std::size_t c = 0; c < state_.capsules.size(); ++c)
-      fastest = std::max(fastest, rate_of_change(memory_.capsules[c].ellipsoid, inertia_ellipsoid(scene_.capsule().surface(), state_.capsules[c].x), length));
-    fastest = dealii::Utilities::MPI::broadcast(communicator_, fastest, 0);
+      fastest = std::max(fastest, rate_of_change(memory_.capsules[c].ellipsoid, inertia_ellipsoid(scene_.capsule(c).surface(), state_.capsules[c].x), length));
+    fastest = scene_.layout().max(fastest);
     // Three steps in a row: at an extremum of the shape one alone may be quiet.
     memory_.n_quiet_steps = fastest < parameters_.time.steady_tolerance ? memory_.n_quiet_steps + 1 : 0;
     return memory_.n_quiet_steps == 3;
@@ -185,7 +189,7 @@ namespace tanktread
     double error = 0.;
     for (const CapsuleMemory &capsule : memory_.capsules)
       error = std::max(error, motion_limits(capsule.motion).largest_error());
-    error = dealii::Utilities::MPI::broadcast(communicator_, error, 0);
+    error = scene_.layout().max(error);
     // Three steps in a row: one bar alone may be small by chance.
     memory_.n_known_steps = error < parameters_.time.limit_tolerance ? memory_.n_known_steps + 1 : 0;
     return memory_.n_known_steps == 3;
@@ -216,7 +220,7 @@ namespace tanktread
         CapsuleObservables  &o = capsules[c];
         const ControlPoints &x = state_.capsules[c].x;
         if (memory_.capsules.size() == c)
-          memory_.capsules.push_back({PhaseAngles(scene_.capsule().topology(), x, o.ellipsoid, o.theta_over_pi), {}, {}});
+          memory_.capsules.push_back({PhaseAngles(scene_.capsule(c).topology(), x, o.ellipsoid, o.theta_over_pi), {}, {}});
         CapsuleMemory &memory = memory_.capsules[c];
         memory.ellipsoid      = o.ellipsoid;
         memory.phase.update(x, o.ellipsoid, o.theta_over_pi);
@@ -242,22 +246,20 @@ namespace tanktread
 
 
   void
-  Simulation::log_step(const StepObservables &step, const std::vector<CapsuleObservables> &capsules)
+  Simulation::log_step(const StepObservables &step, const Results::History &history)
   {
+    const Row         columns = history_row({}, {});
+    const std::size_t n       = columns.size();
+    const auto        of      = [&](const std::string &name, const std::size_t c) {
+      const auto column = std::find_if(columns.begin(), columns.end(), [&](const auto &entry) { return entry.first == name; });
+      return history[n * c + (column - columns.begin())];
+    };
     double volume_error = 0.;
-    for (const CapsuleObservables &capsule : capsules)
-      if (!(std::abs(capsule.volume_error) <= std::abs(volume_error)))
-        volume_error = capsule.volume_error;
+    for (std::size_t c = 0; c < scene_.capsules().size(); ++c)
+      if (const double error = of("volume_error", c); !(std::abs(error) <= std::abs(volume_error)))
+        volume_error = error;
     const double remaining = memory_.n_steps == 0 ? -1. : step.wall_time * (parameters_.scene.end_time - memory_.time) / memory_.time;
-    log_.step({memory_.n_steps,
-               step.time,
-               step.step,
-               step.newton_iterations,
-               step.linear_iterations,
-               capsules[0].ellipsoid.taylor_parameter,
-               capsules[0].theta_over_pi,
-               volume_error,
-               remaining});
+    log_.step({memory_.n_steps, step.time, step.step, step.newton_iterations, step.linear_iterations, of("D_xz", 0), of("theta", 0), volume_error, remaining});
   }
 
 
@@ -280,23 +282,24 @@ namespace tanktread
     const Timings::Scope                   scope(scene_.timings(), "Output");
     const std::vector<CapsuleObservables> &capsules = observed.capsules;
     StepObservables                        o;
-    o.time              = memory_.time;
-    o.step              = step.length;
-    o.dissipation       = scene_.level().dissipation(state_);
-    o.local_error       = step.local_error;
-    o.energy_rise       = step.energy_rise;
-    o.newton_iterations = step.newton_iterations;
-    o.linear_iterations = step.linear_iterations;
-    o.n_cells           = scene_.fluid().mesh().triangulation().n_global_active_cells();
-    o.wall_time         = scene_.timings().elapsed();
+    o.time                         = memory_.time;
+    o.step                         = step.length;
+    o.dissipation                  = scene_.level().dissipation(state_);
+    o.local_error                  = step.local_error;
+    o.energy_rise                  = step.energy_rise;
+    o.newton_iterations            = step.newton_iterations;
+    o.linear_iterations            = step.linear_iterations;
+    o.n_cells                      = scene_.fluid().mesh().triangulation().n_global_active_cells();
+    o.wall_time                    = scene_.timings().elapsed();
+    const Results::History history = Results::history(scene_.layout(), o, capsules);
     if (is_due(memory_.next_history, parameters_.output.history_interval) || last)
-      results_->add_history(o, capsules, observe_suspension(scene_, state_, capsules));
+      results_->add_history(o, history, observe_suspension(scene_, state_, capsules));
     const double interval = parameters_.output.field_interval;
     const bool   fields   = memory_.n_steps == 0 || last || (interval > 0. && is_due(memory_.next_fields, interval));
     add_contours(step.length, fields);
     if (fields)
       results_->add_fields(memory_.time, scene_, state_, observed.velocities);
-    log_step(o, capsules);
+    log_step(o, history);
     resolution_.check(state_, o, capsules);
   }
 
@@ -313,12 +316,19 @@ namespace tanktread
   void
   Simulation::summarise(const std::string &outcome)
   {
-    std::vector<MotionSummary> summaries;
-    for (std::size_t c = 0; c < memory_.capsules.size(); ++c)
+    std::vector<MotionSummary>                        summaries;
+    std::vector<std::pair<unsigned int, std::string>> texts;
+    for (std::size_t i = 0; i < memory_.capsules.size(); ++i)
       {
-        summaries.push_back(motion_summary(memory_.capsules[c].motion, outcome == "steady"));
-        log_.line("\n" + (memory_.capsules.size() > 1 ? "Capsule " + std::to_string(c + 1) + ". " : "") + motion_text(summaries.back()));
+        summaries.push_back(motion_summary(memory_.capsules[i].motion, outcome == "steady"));
+        if (scene_.layout().leads())
+          texts.emplace_back(scene_.layout().own()[i], motion_text(summaries.back()));
       }
+    std::map<unsigned int, std::string> in_order;
+    for (const auto &of_rank : dealii::Utilities::MPI::gather(communicator_, texts))
+      in_order.insert(of_rank.begin(), of_rank.end());
+    for (const auto &[c, text] : in_order)
+      log_.line("\n" + (scene_.capsules().size() > 1 ? "Capsule " + std::to_string(c + 1) + ". " : "") + text);
     resolution_.finish();
     results_->write_summary(outcome, summaries, worst_figures(memory_.warnings));
   }
@@ -330,9 +340,9 @@ namespace tanktread
     constexpr std::size_t    max_meshes = 4; // three stages that end apart, and one that first was not where it is on finer cells
     std::vector<ShellFields> ends;
     StepResult               result = stepper_.step(state_, memory_.time, false);
-    while (!result.beyond_mesh.empty())
+    while (result.beyond_mesh)
       {
-        ends.push_back(result.beyond_mesh);
+        ends.push_back(*result.beyond_mesh);
         log_.line("Step of length " + number(result.length) + " repeated on a mesh around its " + (ends.size() == 1 ? "end" : "stages and its end") +
                   " too: the shells have left the finest cells.");
         const unsigned int remeshing = refine_around_shells(ends);
@@ -388,7 +398,7 @@ namespace tanktread
           throw; // the other ranks have not failed, and wait for this one elsewhere: nothing can be written together
         const std::string reason = error.what() + warnings_before_failure(memory_.warnings);
         log_.line("FAILED at time " + std::to_string(memory_.time) + ": " + reason);
-        log_.line("Last good state: " + results_->write_failed(scene_, state_) + ".");
+        log_.line("Last good state: " + results_->write_failed(state_) + ".");
         summarise("failed");
         log_.timings(scene_.timings());
         throw NumericalError(reason);

@@ -2,6 +2,7 @@
 // Part of Tanktread: how a TimeStepper solves the stages of a step: from what guesses, and by continuation.
 
 #include <tanktread/base/exceptions.h>
+#include <tanktread/base/mpi_errors.h>
 #include <tanktread/simulation/time_stepper.h>
 
 #include <algorithm>
@@ -113,7 +114,8 @@ namespace tanktread
     if (points_along_)
       try
         {
-          const ShellFields w = points_along_->velocity(scene_.level().shells(next), length);
+          ShellFields w;
+          on_all_ranks(scene_.communicator(), [&] { w = points_along_->velocity(scene_.level().shells(next), length); });
           for (std::size_t c = 0; c < w.size(); ++c)
             step.xhat[c] += step.tau * w[c];
         }

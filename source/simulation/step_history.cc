@@ -112,13 +112,22 @@ namespace tanktread
   double
   StepHistory::local_error(const double length, const ShellFields &x, const ShellFields &normals) const
   {
+    Eigen::Index n = 0;
+    for (const ControlPoints &of_shell : x)
+      n += of_shell.rows();
+    return std::sqrt(squared_error(length, x, normals) / n);
+  }
+
+
+  double
+  StepHistory::squared_error(const double length, const ShellFields &x, const ShellFields &normals) const
+  {
     const std::size_t q = order(parameters_.scheme);
     if (levels_.size() < q + 1)
       return 0.;
 
     const std::vector<double> times = this->times(length, q + 1);
     double                    sum   = 0.;
-    Eigen::Index              n     = 0;
     for (std::size_t c = 0; c < x.size(); ++c)
       {
         // Divided difference of q + 2 positions, the new one first: derivative of order q + 1 over its factorial.
@@ -129,7 +138,6 @@ namespace tanktread
           for (std::size_t i = 0; i + k <= q + 1; ++i)
             differences[i] = (differences[i] - differences[i + 1]) / (times[i] - times[i + k]);
         sum += normals.empty() ? differences[0].squaredNorm() : differences[0].cwiseProduct(normals[c]).rowwise().sum().squaredNorm();
-        n += x[c].rows();
       }
     double weight;
     if (const SdirkScheme *const scheme = one_step_scheme())
@@ -140,7 +148,7 @@ namespace tanktread
         for (std::size_t i = 1; i <= q; ++i)
           weight *= times[0] - times[i];
       }
-    return weight * std::sqrt(sum / n);
+    return weight * weight * sum;
   }
 
 

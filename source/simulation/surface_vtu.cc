@@ -99,6 +99,25 @@ namespace tanktread
   }
 
 
+  void
+  write_surface_pvtu(const std::string &file, const std::vector<std::string> &pieces, const std::vector<std::pair<std::string, unsigned int>> &point_fields)
+  {
+    std::ostringstream out;
+    out << "<?xml version=\"1.0\"?>\n"
+        << "<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" byte_order=\"" << byte_order() << "\" header_type=\"UInt64\">\n"
+        << "<PUnstructuredGrid GhostLevel=\"0\">\n"
+        << "<PPoints><PDataArray type=\"Float64\" NumberOfComponents=\"3\"/></PPoints>\n"
+        << "<PPointData>\n";
+    for (const auto &[name, n_components] : point_fields)
+      out << "<PDataArray type=\"Float64\" Name=\"" << name << "\" NumberOfComponents=\"" << n_components << "\"/>\n";
+    out << "</PPointData>\n";
+    for (const std::string &piece : pieces)
+      out << "<Piece Source=\"" << piece << "\"/>\n";
+    out << "</PUnstructuredGrid>\n</VTKFile>\n";
+    replace_file(file, out.str());
+  }
+
+
   PvdFile::PvdFile(std::string file)
     : file(std::move(file))
   {}

@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <tanktread/base/exceptions.h>
+#include <tanktread/base/mpi_errors.h>
 #include <tanktread/fluid/field_transfer.h>
 #include <tanktread/simulation/time_stepper.h>
 
@@ -21,16 +22,12 @@ namespace tanktread
     constexpr double allowed_energy_rise = 1e-6; // in a step with Time/Tolerance > 0, in a liquid at rest
 
     double
-    root_mean_square_distance(const ShellFields &x, const ShellFields &y)
+    root_mean_square_distance(const ShellFields &x, const ShellFields &y, const ShellLayout &layout)
     {
-      double       sum = 0.;
-      Eigen::Index n   = 0;
+      double sum = 0.;
       for (std::size_t c = 0; c < x.size(); ++c)
-        {
-          sum += (x[c] - y[c]).squaredNorm();
-          n += x[c].rows();
-        }
-      return std::sqrt(sum / n);
+        sum += (x[c] - y[c]).squaredNorm();
+      return std::sqrt(layout.sum(sum) / layout.capsules().n_control_points());
     }
   } // namespace
 
@@ -90,7 +87,7 @@ namespace tanktread
     if (points_along_)
       points_along_->begin_step(scene_.level().shell_velocity(state));
     StepResult result = coupling_ == TimeCoupling::explicit_euler ? explicit_step(state, time) : implicit_step(state, time, last_mesh);
-    if (result.beyond_mesh.empty())
+    if (!result.beyond_mesh)
       {
         const ShellFields x = positions(state);
         if (!points_along_) // which does discrete work of its own
@@ -180,15 +177,16 @@ namespace tanktread
 
 
   bool
-  TimeStepper::accept_step(State &state, const double time, const double shortest, const ShellFields &reference, State &next, StepResult &result)
+  TimeStepper::accept_step(State &state, const double time, const double shortest, const std::optional<ShellFields> &reference, State &next, StepResult &result)
   {
-    const double      length  = result.length;
-    const ShellFields x       = positions(next);
-    const ShellFields normals = points_along_ ? unit_normals(scene_.level().shells(next)) : ShellFields();
-    const double      measure = reference.empty() ? memory_.history.local_error(length, x, normals) : root_mean_square_distance(x, reference);
+    const double       length  = result.length;
+    const ShellFields  x       = positions(next);
+    const ShellFields  normals = points_along_ ? unit_normals(scene_.level().shells(next)) : ShellFields();
+    const ShellLayout &layout  = scene_.layout();
+    const double       error   = reference ? root_mean_square_distance(x, *reference, layout)
+                                           : std::sqrt(layout.sum(memory_.history.squared_error(length, x, normals)) / layout.capsules().n_control_points());
     // One answer for all ranks: logarithms and powers may differ in the last digit between kinds of processors.
-    const double error  = dealii::Utilities::MPI::broadcast(scene_.elasticity().communicator(), measure, 0);
-    const double factor = dealii::Utilities::MPI::broadcast(scene_.elasticity().communicator(), memory_.history.length_factor(error), 0);
+    const double factor = dealii::Utilities::MPI::broadcast(scene_.communicator(), memory_.history.length_factor(error), 0);
     memory_.next_length = std::min(parameters_.step, factor * length);
     if (parameters_.tolerance > 0. && error > 2. * parameters_.tolerance)
       {
@@ -221,13 +219,9 @@ namespace tanktread
     const ShellFields velocity    = scene_.level().shell_velocity(state);
     const ShellFields undisturbed = scene_.coupling().undisturbed_velocity(scene_.level().flow(), scene_.level().shells(state));
     double            sum         = 0.;
-    Eigen::Index      n           = 0;
     for (std::size_t c = 0; c < velocity.size(); ++c)
-      {
-        sum += (velocity[c] - undisturbed[c]).squaredNorm();
-        n += velocity[c].rows();
-      }
-    return dealii::Utilities::MPI::broadcast(scene_.elasticity().communicator(), farthest / std::sqrt(sum / n), 0);
+      sum += (velocity[c] - undisturbed[c]).squaredNorm();
+    return farthest / std::sqrt(scene_.layout().sum(sum) / scene_.capsules().n_control_points());
   }
 
 
@@ -261,7 +255,7 @@ namespace tanktread
             log_.line("Step of length " + std::to_string(result.length) + " halved.");
             result.length *= 0.5;
           }
-        else if (accept_step(state, time, shortest, reference && result.length == wanted ? *reference : ShellFields(), next, result))
+        else if (accept_step(state, time, shortest, result.length == wanted ? reference : std::nullopt, next, result))
           return result;
         else
           result.length = memory_.next_length;
@@ -295,16 +289,19 @@ namespace tanktread
     ShellFields velocity = scene_.level().shell_velocity(state);
     if (points_along_)
       {
-        const ShellFields w = points_along_->velocity(scene_.level().shells(state), result.length);
+        ShellFields w;
+        on_all_ranks(scene_.communicator(), [&] { w = points_along_->velocity(scene_.level().shells(state), result.length); });
         for (std::size_t c = 0; c < velocity.size(); ++c)
           velocity[c] += w[c];
       }
     State next = state;
-    for (std::size_t c = 0; c < velocity.size(); ++c)
-      {
-        check_explicit_step(result.length * velocity[c], result.length);
-        next.capsules[c].x += result.length * velocity[c];
-      }
+    on_all_ranks(scene_.communicator(), [&] {
+      for (std::size_t c = 0; c < velocity.size(); ++c)
+        {
+          check_explicit_step(result.length * velocity[c], result.length);
+          next.capsules[c].x += result.length * velocity[c];
+        }
+    });
     try
       {
         result.linear_iterations = scene_.solver().solve_flow(next, time + result.length);

@@ -29,32 +29,43 @@ namespace tanktread
   }
 
 
-  ImplicitShells::ImplicitShells(const Capsule &capsule, const ShellLayout &layout, SolverMemory &memory)
+  ImplicitShells::ImplicitShells(const ShellLayout &layout, SolverMemory &memory)
     : layout_(layout)
     , memory_(memory)
-    , multigrids_(layout.n_capsules())
-    , factors_(layout.n_capsules())
-    , has_factors_(layout.n_capsules(), true)
   {
     int n_ranks, rank;
     MPI_Comm_size(layout.team(), &n_ranks);
     MPI_Comm_rank(layout.team(), &rank);
-    const auto hierarchy = std::make_shared<LoopHierarchy>(capsule.topology(), capsule.surface().pattern(), n_ranks, rank);
-    for (unsigned int c = 0; c < layout.n_capsules(); ++c)
+    for (unsigned int k = 0; k < layout.capsules().n_kinds(); ++k)
       {
-        if (layout.works_on(c) && hierarchy->ends_coarse())
-          multigrids_[c] = std::make_unique<ShellMultigrid>(hierarchy, layout.team());
-        if (layout.owns(c))
-          factors_[c] = std::make_unique<BlockFactorisation>();
+        const Capsule &kind = layout.capsules().kind(k);
+        hierarchies_.push_back(std::make_shared<LoopHierarchy>(kind.topology(), kind.surface().pattern(), n_ranks, rank));
       }
+    reassign();
+  }
+
+
+  void
+  ImplicitShells::reassign()
+  {
+    multigrids_.clear();
+    factors_.clear();
+    for (const unsigned int c : layout_.own())
+      {
+        const auto &hierarchy = hierarchies_[layout_.capsules().kind_of(c)];
+        multigrids_.push_back(hierarchy->ends_coarse() ? std::make_unique<ShellMultigrid>(hierarchy, layout_.team()) : nullptr);
+        factors_.push_back(layout_.leads() ? std::make_unique<BlockFactorisation>() : nullptr);
+      }
+    has_factors_.assign(layout_.n_own(), 1);
+    some_has_factors_ = true;
+    discard();
   }
 
 
   bool
   ImplicitShells::serves(const double tau) const
   {
-    const bool is_dear = std::any_of(has_factors_.begin(), has_factors_.end(), [](const bool has) { return has; });
-    return is_dear && memory_.tau > 0. && !memory_.worn_out && tau <= 1.5 * memory_.tau && memory_.tau <= 1.5 * tau;
+    return some_has_factors_ && memory_.tau > 0. && !memory_.worn_out && tau <= 1.5 * memory_.tau && memory_.tau <= 1.5 * tau;
   }
 
 
@@ -63,30 +74,34 @@ namespace tanktread
   {
     memory_.operators  = std::move(operators);
     memory_.tau        = tau;
-    char is_indefinite = 0;
+    char is_indefinite = 0, has_some = 0;
     std::fill(has_factors_.begin(), has_factors_.end(), 0);
     try
       {
-        for (unsigned int c = 0; c < layout_.n_capsules(); ++c)
-          if (layout_.works_on(c))
-            {
-              if (multigrids_[c])
-                multigrids_[c]->set_up(memory_.operators[c].S);
-              const bool is_good = multigrids_[c] && multigrids_[c]->convergence_factor() < largest_convergence_factor;
-              has_factors_[c]    = layout_.owns(c) && !is_good;
-              if (multigrids_[c] && !is_good)
-                is_indefinite = 1;
-            }
+        for (unsigned int i = 0; i < layout_.n_own(); ++i)
+          {
+            if (multigrids_[i])
+              multigrids_[i]->set_up(memory_.operators[i].S);
+            const bool is_good = multigrids_[i] && multigrids_[i]->convergence_factor() < largest_convergence_factor;
+            has_factors_[i]    = !is_good;
+            if (multigrids_[i] && !is_good)
+              is_indefinite = 1;
+          }
         MPI_Allreduce(MPI_IN_PLACE, &is_indefinite, 1, MPI_CHAR, MPI_MAX, layout_.communicator());
         if (is_indefinite && definite)
           return renew(definite(), tau);
-        MPI_Allreduce(MPI_IN_PLACE, has_factors_.data(), int(has_factors_.size()), MPI_CHAR, MPI_MAX, layout_.communicator());
+        if (!layout_.is_team_of_one())
+          MPI_Bcast(has_factors_.data(), int(has_factors_.size()), MPI_CHAR, 0, layout_.team());
+        for (const char has : has_factors_)
+          has_some = std::max(has_some, has);
+        MPI_Allreduce(MPI_IN_PLACE, &has_some, 1, MPI_CHAR, MPI_MAX, layout_.communicator());
+        some_has_factors_ = has_some != 0;
         on_all_ranks(layout_.communicator(), [&] {
-          for (unsigned int c = 0; c < layout_.n_capsules(); ++c)
-            if (has_factors_[c] && layout_.owns(c))
-              factors_[c]->factorise(memory_.operators[c].S, "The shell's implicit operator, for this time step,");
+          for (unsigned int i = 0; i < layout_.n_own(); ++i)
+            if (has_factors_[i] && layout_.leads())
+              factors_[i]->factorise(memory_.operators[i].S, "The shell's implicit operator, for this time step,");
             else
-              memory_.operators[c].S = {};
+              memory_.operators[i].S = {};
         });
       }
     catch (...)
@@ -130,16 +145,16 @@ namespace tanktread
 
 
   ControlPoints
-  ImplicitShells::velocity(const unsigned int c, const ControlPoints &force) const
+  ImplicitShells::velocity(const unsigned int i, const ControlPoints &force) const
   {
     ControlPoints result;
-    if (!has_factors_[c] && layout_.works_on(c))
-      result = multigrids_[c]->solve(force);
-    if (!layout_.owns(c))
+    if (!has_factors_[i])
+      result = multigrids_[i]->solve(force);
+    if (!layout_.leads())
       return ControlPoints::Zero(force.rows(), 3);
-    if (has_factors_[c])
+    if (has_factors_[i])
       {
-        const Eigen::VectorXd solution = factors_[c]->solve(Eigen::Map<const Eigen::VectorXd>(force.data(), force.size()));
+        const Eigen::VectorXd solution = factors_[i]->solve(Eigen::Map<const Eigen::VectorXd>(force.data(), force.size()));
         result                         = Eigen::Map<const ControlPoints>(solution.data(), force.rows(), 3);
       }
     return result;
@@ -147,9 +162,9 @@ namespace tanktread
 
 
   ControlPoints
-  ImplicitShells::damped(const unsigned int c, const ControlPoints &force) const
+  ImplicitShells::damped(const unsigned int i, const ControlPoints &force) const
   {
-    const ControlPoints undamped = velocity(c, force);
-    return layout_.owns(c) ? ControlPoints(memory_.operators[c].Z * undamped * memory_.operators[c].drift.transpose()) : undamped;
+    const ControlPoints undamped = velocity(i, force);
+    return layout_.leads() ? ControlPoints(memory_.operators[i].Z * undamped * memory_.operators[i].drift.transpose()) : undamped;
   }
 } // namespace tanktread

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/numbers.h>
 
+#include <tanktread/base/mpi_errors.h>
 #include <tanktread/solver/linearised_shell.h>
 #include <tanktread/surface/surface_geometry.h>
 #include <tanktread/surface/surface_operators.h>
@@ -24,30 +25,14 @@ namespace tanktread
       Z.coeffs() += c1 * laplace_beltrami(surface, x).coeffs();
       return Z;
     }
-
-
-    /** At the middle of a shell. */
-    Eigen::Matrix3d
-    gradient_about(const UndisturbedFlow &flow, const ControlPoints &x)
-    {
-      const Eigen::RowVector3d   centre   = x.colwise().mean();
-      const dealii::Tensor<2, 3> gradient = flow.gradient({centre[0], centre[1], centre[2]});
-      Eigen::Matrix3d            result;
-      for (unsigned int c = 0; c < 3; ++c)
-        for (unsigned int d = 0; d < 3; ++d)
-          result(c, d) = gradient[c][d];
-      return result;
-    }
   } // namespace
 
 
-  LinearisedShell::LinearisedShell(const DistributedShell                          &elasticity,
-                                   const Coupling                                  &coupling,
-                                   const unsigned int                               c,
-                                   const CapsuleState                              &state,
+  LinearisedShell::LinearisedShell(const CapsuleState                              &state,
                                    const std::shared_ptr<const ShellConfiguration> &shell,
                                    const ControlPoints                             &velocity,
-                                   const VelocityGradients                         &velocity_gradient,
+                                   SparseMatrix                                     stiffness,
+                                   SparseMatrix                                     gradient,
                                    const Linearisation                             &choice)
     : capsule_(shell->capsule())
     , shell_(shell)
@@ -60,23 +45,17 @@ namespace tanktread
     if (tau_ == 0.)
       return;
     MotionTerms           terms;
-    const Eigen::Matrix3d G              = gradient_about(choice.flow, shell->x());
+    const Eigen::Matrix3d G              = gradient_at_middle(choice.flow, shell->x());
     const SparseMatrix   &volume_hessian = shell->volume_hessian();
     flux_gradient_                       = shell->volume_gradient() * G + nodal(volume_hessian * flat(velocity));
-    if (choice.derivatives == PointDerivatives::complete || choice.flow.quadratic.norm_square() > 0.)
+    if (gradient.nonZeros() > 0)
       {
-        VelocityGradients excess = coupling.transfer(c).gradients(choice.flow, *shell);
-        if (choice.derivatives == PointDerivatives::complete)
-          excess += velocity_gradient;
-        for (unsigned int component = 0; component < 9; ++component)
-          excess.col(component).array() -= G(component / 3, component % 3);
-        coupling.gradient_matrix(c, excess, terms.gradient);
-        flux_gradient_ += nodal(terms.gradient.transpose() * flat(shell->normal_field()));
-        terms.gradient.coeffs() *= tau_;
+        flux_gradient_ += nodal(gradient.transpose() * flat(shell->normal_field()));
+        gradient.coeffs() *= tau_;
+        terms.gradient = std::move(gradient);
       }
 
-    ControlPoints force;
-    elasticity.force_and_tangent(state.x, force, stiffness_, choice.tangent);
+    stiffness_ = std::move(stiffness);
     if (choice.tangent == Tangent::exact)
       stiffness_.coeffs() -= state.pressure_jump * volume_hessian.coeffs();
 
@@ -94,7 +73,7 @@ namespace tanktread
   {
     return tanktread::implicit_operator(inverse_mobility(capsule_.surface(), shell_->x(), choice.h, choice.viscosity),
                                         std::move(stiffness),
-                                        gradient_about(choice.flow, shell_->x()),
+                                        gradient_at_middle(choice.flow, shell_->x()),
                                         tau_);
   }
 
@@ -167,36 +146,43 @@ namespace tanktread
   }
 
 
-  LinearisedShells::LinearisedShells(const DistributedShell               &elasticity,
-                                     const Coupling                       &coupling,
-                                     const State                          &state,
-                                     const ShellConfigurations            &shells,
-                                     const ShellFields                    &velocities,
-                                     const std::vector<VelocityGradients> &velocity_gradients,
-                                     const Linearisation                  &choice,
-                                     ImplicitShells                       &implicit_shells)
+  LinearisedShells::LinearisedShells(const DistributedShell    &elasticity,
+                                     const Coupling            &coupling,
+                                     const State               &state,
+                                     const ShellConfigurations &shells,
+                                     const ShellFields         &velocities,
+                                     const Linearisation       &choice,
+                                     ImplicitShells            &implicit_shells)
     : coupling_(coupling)
     , implicit_shells_(implicit_shells)
     , tau_(choice.tau)
     , points_move_(choice.derivatives == PointDerivatives::complete && choice.tau > 0.)
   {
+    const ShellFields         x = positions(state);
+    std::vector<SparseMatrix> stiffness(shells.size()), gradients(shells.size());
+    if (tau_ > 0.)
+      stiffness = elasticity.tangents(x, choice.tangent);
+    if (points_move_ || (tau_ > 0. && choice.flow.quadratic.norm_square() > 0.))
+      gradients = coupling.gradient_matrices(shells, choice.flow, points_move_ ? &state.fluid : nullptr);
     shells_.reserve(shells.size());
-    for (unsigned int c = 0; c < shells.size(); ++c)
-      shells_.emplace_back(elasticity, coupling, c, state.capsules[c], shells[c], velocities[c], velocity_gradients[c], choice);
+    on_all_ranks(coupling.layout().communicator(), [&] {
+      for (unsigned int i = 0; i < shells.size(); ++i)
+        shells_.emplace_back(state.capsules[i], shells[i], velocities[i], std::move(stiffness[i]), std::move(gradients[i]), choice);
+    });
     if (tau_ == 0. || implicit_shells.serves(tau_))
       return;
     ImplicitShells::Operators operators;
-    for (unsigned int c = 0; c < shells.size(); ++c)
-      operators.push_back(implicit_shells.works_on(c) ? shells_[c].implicit_operator(choice) : ImplicitOperator());
+    on_all_ranks(coupling.layout().communicator(), [&] {
+      for (const LinearisedShell &shell : shells_)
+        operators.push_back(shell.implicit_operator(choice));
+    });
     const auto positive_ones = [&]() {
+      std::vector<SparseMatrix> positive = elasticity.tangents(x, Tangent::positive);
       ImplicitShells::Operators result;
-      for (unsigned int c = 0; c < shells.size(); ++c)
-        {
-          ControlPoints force;
-          SparseMatrix  stiffness;
-          elasticity.force_and_tangent(state.capsules[c].x, force, stiffness, Tangent::positive);
-          result.push_back(implicit_shells.works_on(c) ? shells_[c].implicit_operator(choice, std::move(stiffness)) : ImplicitOperator());
-        }
+      on_all_ranks(coupling.layout().communicator(), [&] {
+        for (unsigned int i = 0; i < shells_.size(); ++i)
+          result.push_back(shells_[i].implicit_operator(choice, std::move(positive[i])));
+      });
       return result;
     };
     if (choice.tangent == Tangent::exact)

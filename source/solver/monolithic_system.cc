@@ -46,7 +46,7 @@ namespace tanktread
     ShellFields                      moments, dx;
     {
       const Timings::Scope scope(timings_, "- coupling");
-      extend(src, densities(unknowns), forces_);
+      extend(src, densities(unknowns), pressure_jumps(unknowns), forces_);
       moments = coupling.velocity_moments(src, forces_);
     }
     {
@@ -75,7 +75,7 @@ namespace tanktread
           coupling.spread_with_motion(change, dx, present, dst);
         }
       else
-        coupling.spread(-1., forces_, pressure_jumps(unknowns), dst);
+        coupling.spread(-1., forces_, dst);
     }
     const Timings::Scope scope(timings_, "- shell");
     for (unsigned int c = 0; c < shells_.size(); ++c)

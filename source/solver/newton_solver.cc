@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: Newton's method for a time level.
 
-#include <deal.II/base/mpi.h>
-
 #include <tanktread/base/exceptions.h>
 #include <tanktread/solver/newton_solver.h>
 
@@ -33,49 +31,43 @@ namespace tanktread
     , level_(level)
     , memory_(memory)
     , timings_(timings)
-    , layout_(level.coupling().n_capsules(), level.coupling().capsule().n_control_points(), level.elasticity().communicator())
-    , volume_(level.coupling().capsule().volume())
-    , implicit_shells_(level.coupling().capsule(), layout_, memory)
+    , layout_(level.coupling().layout())
+    , volume_(layout_.capsules().volume() / layout_.n_capsules())
+    , implicit_shells_(layout_, memory)
   {}
 
 
   double
   NewtonSolver::speed(const Residual &r, const double tau) const
   {
-    double       sum = 0., of_volumes = 0.;
-    Eigen::Index n = 0;
-    for (const Residual::OfCapsule &capsule : r.capsules)
+    double sum = 0., of_volumes = 0.;
+    for (unsigned int i = 0; i < r.capsules.size(); ++i)
       {
+        const Residual::OfCapsule &capsule = r.capsules[i];
         sum += capsule.velocity.squaredNorm() + capsule.x.squaredNorm() / (tau * tau);
-        n += capsule.x.rows();
-        of_volumes += std::pow(capsule.flux, 2) + std::pow(capsule.volume / tau, 2);
+        of_volumes += (std::pow(capsule.flux, 2) + std::pow(capsule.volume / tau, 2)) / std::pow(3. * layout_.capsule(i).volume(), 2);
       }
-    return std::sqrt(sum / n + of_volumes / std::pow(3. * volume_, 2));
+    return std::sqrt(layout_.sum(sum / layout_.capsules().n_control_points() + of_volumes));
   }
 
 
   double
   NewtonSolver::norm(const Residual &r, const double tau) const
   {
-    double       sum = 0.;
-    Eigen::Index n   = 0;
-    for (unsigned int c = 0; c < r.capsules.size(); ++c)
-      {
-        sum += implicit_shells_.velocity(c, r.capsules[c].force).squaredNorm();
-        n += r.capsules[c].force.rows();
-      }
-    sum = dealii::Utilities::MPI::sum(sum, layout_.communicator());
-    return dealii::Utilities::MPI::broadcast(layout_.communicator(), std::hypot(speed(r, tau), std::sqrt(sum / n)), 0);
+    double sum = 0.;
+    for (unsigned int i = 0; i < r.capsules.size(); ++i)
+      sum += implicit_shells_.velocity(i, r.capsules[i].force).squaredNorm();
+    return std::hypot(speed(r, tau), std::sqrt(layout_.sum(sum) / layout_.capsules().n_control_points()));
   }
 
 
   bool
   NewtonSolver::is_solved(const Residual &r, const double norm) const
   {
-    bool volumes = true;
-    for (const Residual::OfCapsule &capsule : r.capsules)
-      volumes = volumes && std::abs(capsule.volume) <= parameters_.volume_tolerance * volume_;
-    return norm <= parameters_.newton_tolerance && volumes;
+    double largest = 0.; // error of a volume
+    for (unsigned int i = 0; i < r.capsules.size(); ++i)
+      largest = std::max(largest, std::abs(r.capsules[i].volume) / layout_.capsule(i).volume());
+    return layout_.max(largest) <= parameters_.volume_tolerance && norm <= parameters_.newton_tolerance;
   }
 
 
@@ -86,7 +78,7 @@ namespace tanktread
       return true;
     constexpr double part       = 0.1; // of what the step dissipates
     double           left_over  = 0.;
-    double           dissipated = 3. * volume_ * level_.liquids().mean_viscosity() * std::pow(parameters_.newton_tolerance, 2) * step.tau;
+    double           dissipated = 0.;
     const auto      &shells     = level_.shells(state);
     for (std::size_t c = 0; c < shells.size(); ++c)
       {
@@ -98,20 +90,18 @@ namespace tanktread
           std::abs(capsule.pressure_jump * missing.volume);
         dissipated += std::abs(load.cwiseProduct(way).sum());
       }
-    return dealii::Utilities::MPI::broadcast(layout_.communicator(), left_over / dissipated, 0) <= part;
+    const double at_tolerance = 3. * volume_ * level_.liquids().mean_viscosity() * std::pow(parameters_.newton_tolerance, 2) * step.tau;
+    return layout_.sum(left_over) <= part * (layout_.sum(dissipated) + at_tolerance);
   }
 
 
   LinearisedShells
   NewtonSolver::linearised(const State &state, const Linearisation &choice)
   {
-    const Timings::Scope           scope(timings_, "Shell tangent and factorisation");
-    std::vector<VelocityGradients> gradients(layout_.n_capsules());
-    if (choice.derivatives == PointDerivatives::complete)
-      gradients = level_.coupling().velocity_gradients(state.fluid);
+    const Timings::Scope scope(timings_, "Shell tangent and factorisation");
     if (level_.inertia() != nullptr)
       level_.inertia()->linearise(state.fluid);
-    return {level_.elasticity(), level_.coupling(), state, level_.shells(state), level_.shell_velocity(state), std::move(gradients), choice, implicit_shells_};
+    return {level_.elasticity(), level_.coupling(), state, level_.shells(state), level_.shell_velocity(state), choice, implicit_shells_};
   }
 
 
@@ -138,7 +128,7 @@ namespace tanktread
         pressure_jumps_.emplace(FluidOperator{fluid.stokes(), inertia},
                                 fluid.preconditioner(),
                                 level_.coupling(),
-                                volume_ / level_.liquids().mean_viscosity(),
+                                level_.liquids().mean_viscosity(),
                                 krylov_basis_,
                                 tolerance);
       }
@@ -176,7 +166,7 @@ namespace tanktread
       increment.fluid.block(b) = solution.block(b);
     const std::vector<ShellUnknowns> unknowns = layout_.unknowns(solution);
     ExtendedForces                   extended;
-    matrix.extend(solution, densities(unknowns), extended);
+    matrix.extend(solution, densities(unknowns), {}, extended);
     const ShellFields moments = level_.coupling().velocity_moments(solution, extended);
     increment.capsules.resize(shells.size());
     for (unsigned int c = 0; c < shells.size(); ++c)
@@ -186,11 +176,11 @@ namespace tanktread
         capsule.x             = dx0[c] + shells[c].displacement(moments[c]);
         capsule.volume_shift  = shells[c].volume_shift(moments[c], r.capsules[c].x, capsule.x);
         capsule.force         = shells[c].force_change(shells[c].force(unknowns[c].density), capsule.x);
-        // All ranks have computed this alike up to rounding, which differs between kinds of processors: one answer for all, so that they take the same
+        // The ranks of a team have computed this alike up to rounding, which differs between kinds of processors: one answer for all, so that they take the same
         // decisions.
-        MPI_Bcast(capsule.x.data(), capsule.x.size(), MPI_DOUBLE, 0, layout_.communicator());
-        MPI_Bcast(capsule.force.data(), capsule.force.size(), MPI_DOUBLE, 0, layout_.communicator());
-        MPI_Bcast(&capsule.volume_shift, 1, MPI_DOUBLE, 0, layout_.communicator());
+        layout_.share(capsule.x.data(), capsule.x.size());
+        layout_.share(capsule.force.data(), capsule.force.size());
+        layout_.share(&capsule.volume_shift, 1);
       }
   }
 
@@ -238,7 +228,7 @@ namespace tanktread
       }
     Residual r = level_.residual(trial, step, level_.has_viscosities() ? Points::stay : Points::follow);
     Progress progress;
-    progress.length = dealii::Utilities::MPI::broadcast(layout_.communicator(), step.tau * speed(r, step.tau), 0);
+    progress.length = step.tau * speed(r, step.tau);
     while (!progress.solved)
       {
         if (report.newton_iterations == parameters_.max_newton_iterations && progress.tolerable)
@@ -352,7 +342,8 @@ namespace tanktread
     // Relative to the loads of the shells and of unit pressures, not to what the initial guess has left of them.
     double flux = 0.;
     for (const Residual::OfCapsule &capsule : r.capsules)
-      flux = std::hypot(flux, capsule.flux);
+      flux += capsule.flux * capsule.flux;
+    flux                = std::sqrt(layout_.sum(flux));
     const double wanted = std::max(1e-10, 1e-2 * parameters_.newton_tolerance) * level_.loads(state).l2_norm(), given = std::hypot(r.fluid.l2_norm(), flux);
     if (given <= wanted)
       return 0;

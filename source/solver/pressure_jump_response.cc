@@ -18,19 +18,19 @@ namespace tanktread
   PressureJumpResponse::PressureJumpResponse(const FluidOperator &fluid,
                                              const StokesInverse &preconditioner,
                                              const Coupling      &coupling,
-                                             const double         volume,
+                                             const double         viscosity,
                                              KrylovBasis         &basis,
                                              const double         tolerance)
-    : communicator_(preconditioner.space().mesh.communicator())
-    , s_(coupling.n_capsules(), 0.)
+    : layout_(coupling.layout())
+    , s_(coupling.shells().size(), 0.)
   {
     const TaylorHoodSpace &space = preconditioner.space();
     FluidBlockVector       load, response, product;
     ShellFields            normal_fields;
     for (FluidBlockVector *vector : {&load, &response, &product})
       space.reinit(*vector);
-    for (unsigned int c = 0; c < coupling.n_capsules(); ++c)
-      normal_fields.push_back(coupling.transfer(c).shell().normal_field());
+    for (const auto &shell : coupling.shells())
+      normal_fields.push_back(shell->normal_field());
     assign_nodes(space, coupling);
     coupling.spread_plainly(normal_fields, load);
     solve_fgmres(fluid, preconditioner, response, load, tolerance, max_iterations, basis);
@@ -43,7 +43,8 @@ namespace tanktread
     e_ *= -1.;
     for (std::size_t c = 0; c < s_.size(); ++c)
       {
-        s_[c] = normal_fields[c].cwiseProduct(moments[c]).sum() - divergence[c];
+        s_[c]               = normal_fields[c].cwiseProduct(moments[c]).sum() - divergence[c];
+        const double volume = coupling.shells()[c]->capsule().volume() / viscosity;
         if (!(s_[c] > 1e-4 * volume && s_[c] < volume))
           s_[c] = volume;
       }
@@ -53,17 +54,19 @@ namespace tanktread
   void
   PressureJumpResponse::assign_nodes(const TaylorHoodSpace &space, const Coupling &coupling)
   {
-    if (coupling.n_capsules() == 1)
+    if (layout_.n_capsules() == 1)
       return;
     const NodeSpace              &p       = *space.pressure;
     const std::vector<double>     corners = lower_corners(space);
     const Box                    &box     = space.mesh.box();
     std::vector<dealii::Point<3>> centres;
-    for (unsigned int c = 0; c < coupling.n_capsules(); ++c)
-      {
-        const Eigen::RowVector3d mean = coupling.transfer(c).shell().x().colwise().mean();
-        centres.emplace_back(mean[0], mean[1], mean[2]);
-      }
+    std::vector<double>           own_means;
+    for (const auto &shell : coupling.shells())
+      for (unsigned int d = 0; d < 3; ++d)
+        own_means.push_back(shell->x().col(d).mean());
+    const std::vector<double> means = layout_.gathered(own_means, 3);
+    for (std::size_t c = 0; c < means.size(); c += 3)
+      centres.emplace_back(means[c], means[c + 1], means[c + 2]);
     const auto nearest = [&](const dealii::Point<3> &x) {
       unsigned int result = 0;
       double       least  = std::numeric_limits<double>::infinity();
@@ -91,11 +94,13 @@ namespace tanktread
   std::vector<double>
   PressureJumpResponse::products(const FluidVector &p, const FluidVector &q) const
   {
-    std::vector<double> result(s_.size(), 0.);
+    std::vector<double> of_all(layout_.n_capsules(), 0.), result;
     const double *const p_i = p.begin(), *const q_i = q.begin();
     for (std::size_t i = 0; i < p.locally_owned_size(); ++i)
-      result[capsule_of_node_.empty() ? 0 : capsule_of_node_[i]] += p_i[i] * q_i[i];
-    MPI_Allreduce(MPI_IN_PLACE, result.data(), int(result.size()), MPI_DOUBLE, MPI_SUM, communicator_);
+      of_all[capsule_of_node_.empty() ? 0 : capsule_of_node_[i]] += p_i[i] * q_i[i];
+    MPI_Allreduce(MPI_IN_PLACE, of_all.data(), int(of_all.size()), MPI_DOUBLE, MPI_SUM, layout_.communicator());
+    for (const unsigned int c : layout_.own())
+      result.push_back(of_all[c]);
     return result;
   }
 

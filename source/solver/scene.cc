@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: capsules in a box of liquid, put together.
 
-#include <deal.II/base/mpi.h>
-
+#include <tanktread/base/mpi_errors.h>
+#include <tanktread/coupling/shell_neighbours.h>
 #include <tanktread/solver/scene.h>
 
 #include <cmath>
@@ -15,13 +15,23 @@ namespace tanktread
   namespace
   {
     CapsuleQuadrature
-    quadrature(const SceneDescription &scene, const FluidMesh &mesh)
+    quadrature(const SceneDescription &scene, const CapsuleKind &kind, const double finest_cell)
     {
-      CapsuleQuadrature result =
-        capsule_quadrature(scene.shape, scene.shell_quadrature, scene.solver.interface, mesh.cell_size(mesh.finest_level()), scene.liquids.viscosity_ratio);
-      if (scene.coupling_quadrature)
-        result.coupling = *scene.coupling_quadrature;
+      CapsuleQuadrature result = capsule_quadrature(kind.shape, kind.shell_quadrature, scene.solver.interface, finest_cell, scene.liquids.viscosity_ratio);
+      if (kind.coupling_quadrature)
+        result.coupling = *kind.coupling_quadrature;
       return result;
+    }
+
+
+    Capsules
+    make_capsules(const SceneDescription &scene, const FluidMesh &mesh)
+    {
+      const double                                finest_cell = mesh.cell_size(mesh.finest_level());
+      std::vector<std::unique_ptr<const Capsule>> kinds;
+      for (const CapsuleKind &kind : scene.kinds)
+        kinds.push_back(std::make_unique<Capsule>(kind.shape, quadrature(scene, kind, finest_cell), kind.shell, kind.moduli, kind.stress_free));
+      return {std::move(kinds), scene.kind_of.empty() ? std::vector<unsigned int>(scene.places.size(), 0) : scene.kind_of};
     }
   } // namespace
 
@@ -30,9 +40,10 @@ namespace tanktread
     : description_(std::move(description))
     , communicator_(communicator)
     , fluid_(communicator, description_.box, description_.fluid_mesh, description_.solver.method)
-    , capsule_(description_.shape, quadrature(description_, fluid_.mesh()), description_.shell, description_.moduli, description_.stress_free)
-    , elasticity_(capsule_.shell(), capsule_.topology(), communicator)
-    , coupling_(capsule_, description_.places.size(), description_.solver.interface)
+    , capsules_(make_capsules(description_, fluid_.mesh()))
+    , layout_(capsules_, communicator, description_.n_teams)
+    , elasticity_(layout_)
+    , coupling_(layout_, description_.solver.interface)
     , level_(description_.liquids, elasticity_, coupling_, memory_, timings_)
     , solver_(description_.solver, level_, memory_, timings_)
   {}
@@ -42,11 +53,11 @@ namespace tanktread
   Scene::initial_state() const
   {
     State result;
-    for (const Place &place : description_.places)
+    for (const unsigned int c : layout_.own())
       {
         result.capsules.emplace_back();
-        result.capsules.back().x     = placed(capsule_.initial(), place);
-        result.capsules.back().force = ControlPoints::Zero(capsule_.n_control_points(), 3);
+        result.capsules.back().x     = placed(capsules_[c].initial(), description_.places[c]);
+        result.capsules.back().force = ControlPoints::Zero(capsules_[c].n_control_points(), 3);
       }
     return result;
   }
@@ -56,12 +67,17 @@ namespace tanktread
   Scene::refine_around(const State &state, const std::vector<ShellFields> &others)
   {
     const Timings::Scope          scope(timings_, "Fluid mesh and multigrid");
-    std::vector<dealii::Point<3>> points = coupling_.points(level_.shells(state));
-    for (const ShellFields &x : others)
-      {
-        const std::vector<dealii::Point<3>> further = coupling_.points(shell_configurations(capsule_, x));
-        points.insert(points.end(), further.begin(), further.end());
-      }
+    std::vector<dealii::Point<3>> points;
+    on_all_ranks(communicator_, [&] {
+      if (layout_.leads())
+        points = Coupling::points(level_.shells(state));
+      for (const ShellFields &x : others)
+        for (unsigned int i = 0; layout_.leads() && i < x.size(); ++i)
+          {
+            const std::vector<dealii::Point<3>> further = Coupling::points({std::make_shared<ShellConfiguration>(capsule(i), x[i])});
+            points.insert(points.end(), further.begin(), further.end());
+          }
+    });
     fluid_.adapt(points);
     level_.attach(fluid_);
   }
@@ -70,7 +86,8 @@ namespace tanktread
   bool
   Scene::covers(const State &state)
   {
-    return fluid_.mesh().covers(coupling_.points(level_.shells(state)), coupling_.knows_motion() ? 0.5 : 1.);
+    const std::vector<dealii::Point<3>> points = layout_.leads() ? Coupling::points(level_.shells(state)) : std::vector<dealii::Point<3>>();
+    return fluid_.mesh().covers(points, coupling_.knows_motion() ? 0.5 : 1.);
   }
 
 
@@ -87,7 +104,7 @@ namespace tanktread
   ShellGap
   Scene::gap(const State &state)
   {
-    return smallest_gap(level_.shells(state), periods(), 4. * level_.finest_cell());
+    return smallest_gap(layout_, level_.shells(state), periods(), 4. * level_.finest_cell());
   }
 
 
@@ -97,7 +114,7 @@ namespace tanktread
     std::array<double, 3> half_sides;
     for (unsigned int d = 0; d < 3; ++d)
       half_sides[d] = description_.box.is_periodic(d) ? std::numeric_limits<double>::infinity() : 0.5 * description_.box.side[d];
-    return smallest_distance_from_faces(level_.shells(state), half_sides);
+    return -layout_.max(-smallest_distance_from_faces(level_.shells(state), half_sides));
   }
 
 
@@ -106,11 +123,11 @@ namespace tanktread
   {
     const ShellGap     smallest = gap(state);
     std::ostringstream message;
-    if (dealii::Utilities::MPI::broadcast(communicator_, smallest.gap, 0) <= 0.)
+    if (smallest.gap <= 0.)
       message << "capsules " << smallest.first + 1 << " and " << smallest.second + 1 << " overlap by " << std::abs(smallest.gap) << " a";
     else if (description_.liquids.unbounded)
       {
-        const double distance = dealii::Utilities::MPI::broadcast(communicator_, distance_from_faces(state), 0);
+        const double distance = distance_from_faces(state);
         if (distance < UnboundedLiquid::least_distance)
           message << "a capsule is " << distance << " a from a face of the box, less than the " << UnboundedLiquid::least_distance
                   << " a that unbounded liquid needs (Scene/Box side)";

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: the nonlinear system of a time level: what is wrong with a state, and what a state means.
 
-#include <deal.II/base/mpi.h>
-
+#include <tanktread/base/mpi_errors.h>
 #include <tanktread/solver/time_level.h>
 #include <tanktread/surface/surface_geometry.h>
 
@@ -41,14 +40,14 @@ namespace tanktread
     }
 
 
-    /** Of the shells from such positions, infinite if there are none. */
+    /** Of the shells from such positions, infinite if there are none. Collective. */
     double
-    distance(const State &state, const ShellFields &x)
+    distance(const State &state, const ShellFields &x, const ShellLayout &layout)
     {
-      double result = x.empty() ? std::numeric_limits<double>::infinity() : 0.;
+      double result = x.empty() && !state.capsules.empty() ? std::numeric_limits<double>::infinity() : 0.;
       for (std::size_t c = 0; c < x.size(); ++c)
         result = std::max(result, (state.capsules[c].x - x[c]).rowwise().norm().maxCoeff());
-      return result;
+      return layout.max(result);
     }
   } // namespace
 
@@ -79,7 +78,7 @@ namespace tanktread
     if (has_inertia())
       inertia_ = std::make_unique<Inertia>(fluid.space(), liquids_.reynolds_number, flow_);
     if (liquids_.unbounded)
-      unbounded_ = std::make_unique<UnboundedLiquid>(fluid.space(), liquids_.viscosity_ratio);
+      unbounded_ = std::make_unique<UnboundedLiquid>(fluid.space(), coupling_.layout(), liquids_.viscosity_ratio);
   }
 
 
@@ -110,8 +109,8 @@ namespace tanktread
   {
     shells_.resize(state.capsules.size());
     for (std::size_t c = 0; c < shells_.size(); ++c)
-      if (const ControlPoints &x = state.capsules[c].x; !shells_[c] || shells_[c]->x() != x)
-        shells_[c] = std::make_shared<ShellConfiguration>(coupling_.capsule(), x);
+      if (const ControlPoints &x = state.capsules[c].x; !shells_[c] || &shells_[c]->capsule() != &coupling_.layout().capsule(c) || shells_[c]->x() != x)
+        shells_[c] = std::make_shared<ShellConfiguration>(coupling_.layout().capsule(c), x);
     return shells_;
   }
 
@@ -123,7 +122,7 @@ namespace tanktread
       return;
     const Timings::Scope scope(timings_, "Viscosity");
     memory_.viscosity_x           = positions(state);
-    const bool for_preconditioner = distance(state, preconditioner_x_) > 0.25 * finest_cell();
+    const bool for_preconditioner = distance(state, preconditioner_x_, coupling_.layout()) > 0.25 * finest_cell();
     if (for_preconditioner)
       preconditioner_x_ = memory_.viscosity_x;
     fluid_->set_viscosity(coupling_.viscosity(shells(state)), for_preconditioner);
@@ -137,7 +136,7 @@ namespace tanktread
   double
   TimeLevel::viscosity_distance(const State &state) const
   {
-    return has_viscosities() ? distance(state, memory_.viscosity_x) : 0.;
+    return has_viscosities() ? distance(state, memory_.viscosity_x, coupling_.layout()) : 0.;
   }
 
 
@@ -155,14 +154,25 @@ namespace tanktread
     const double         tau = step.tau;
     Residual             r;
     r.capsules.resize(state.capsules.size());
+    const ShellFields elastic = elasticity_.forces(positions(state));
     for (std::size_t c = 0; c < state.capsules.size(); ++c)
-      r.capsules[c].force = state.capsules[c].force - elasticity_.force(state.capsules[c].x);
+      r.capsules[c].force = state.capsules[c].force - elastic[c];
     const ShellConfigurations shells = this->shells(state);
+    on_all_ranks(coupling_.layout().communicator(), [&] {
+      for (std::size_t c = 0; c < shells.size(); ++c)
+        {
+          r.capsules[c].volume = shells[c]->volume() - shells[c]->capsule().volume();
+          shells[c]->normal_field(); // computed here, where all ranks learn of shells that are degenerate
+        }
+    });
     if (points == Points::follow)
       move_points(state);
 
+    std::vector<double> pressure_jumps;
+    for (const CapsuleState &capsule : state.capsules)
+      pressure_jumps.push_back(capsule.pressure_jump);
     ExtendedForces extended;
-    coupling_.extend_whole(coupling_.density(forces(state)), extended);
+    coupling_.extend_whole(coupling_.density(forces(state)), extended, pressure_jumps);
     ShellFields       velocities  = coupling_.interpolate(state.fluid, extended);
     const ShellFields undisturbed = coupling_.undisturbed_velocity(flow_, shells);
     for (std::size_t c = 0; c < shells.size(); ++c)
@@ -179,15 +189,11 @@ namespace tanktread
       r.fluid.block(velocity_block) += undisturbed_load_;
     if (inertia_ && tau > 0.)
       inertia_->add_residual(state.fluid, r.fluid);
-    std::vector<double> pressure_jumps;
-    for (const CapsuleState &capsule : state.capsules)
-      pressure_jumps.push_back(capsule.pressure_jump);
-    coupling_.spread(-1., extended, pressure_jumps, r.fluid);
+    coupling_.spread(-1., extended, r.fluid);
     const ShellFields of_missing_loads = shell_velocity_of(r.fluid);
     for (std::size_t c = 0; c < shells.size(); ++c)
       {
         r.capsules[c].velocity = of_missing_loads[c];
-        r.capsules[c].volume   = shells[c]->volume() - shells[c]->capsule().volume();
         r.capsules[c].flux     = shells[c]->volume_gradient().cwiseProduct(velocities[c]).sum();
         r.capsules[c].x        = state.capsules[c].x - step.xhat[c] - tau * velocities[c] - state.capsules[c].volume_shift * shells[c]->normal_field();
       }
@@ -265,8 +271,9 @@ namespace tanktread
   void
   TimeLevel::set_forces(State &state) const
   {
-    for (CapsuleState &capsule : state.capsules)
-      capsule.force = elasticity_.force(capsule.x);
+    const ShellFields f = elasticity_.forces(positions(state));
+    for (std::size_t c = 0; c < f.size(); ++c)
+      state.capsules[c].force = f[c];
   }
 
 
@@ -278,14 +285,15 @@ namespace tanktread
     const ShellFields g = coupling_.density(F);
     coupling_.extend_whole(g, extended);
     const ShellFields disturbance = coupling_.interpolate(state.fluid, extended);
-    double            result      = -inertial_power(state);
+    double            of_shells   = 0.;
     for (std::size_t c = 0; c < F.size(); ++c)
-      result += F[c].cwiseProduct(disturbance[c]).sum();
-    if (!has_viscosities())
-      return result;
-    result += undisturbed_load_ * state.fluid.block(velocity_block) + coupling_.undisturbed_work(g);
-    for (const auto &shell : shells(state))
-      result += (liquids_.viscosity_ratio - 1.) * undisturbed_dissipation(flow_, *shell);
+      of_shells += F[c].cwiseProduct(disturbance[c]).sum();
+    if (has_viscosities())
+      for (const auto &shell : shells(state))
+        of_shells += (liquids_.viscosity_ratio - 1.) * undisturbed_dissipation(flow_, *shell);
+    double result = coupling_.layout().sum(of_shells) - inertial_power(state);
+    if (has_viscosities())
+      result += undisturbed_load_ * state.fluid.block(velocity_block) + coupling_.undisturbed_work(g);
     return result;
   }
 

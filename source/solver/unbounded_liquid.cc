@@ -34,8 +34,9 @@ namespace tanktread
   } // namespace
 
 
-  UnboundedLiquid::UnboundedLiquid(const TaylorHoodSpace &space, const double viscosity_ratio)
+  UnboundedLiquid::UnboundedLiquid(const TaylorHoodSpace &space, const ShellLayout &layout, const double viscosity_ratio)
     : space_(space)
+    , layout_(layout)
     , viscosity_ratio_(viscosity_ratio)
     , faces_(space)
     , uniform_(space)
@@ -117,20 +118,54 @@ namespace tanktread
 
 
   void
+  UnboundedLiquid::add_all_stokeslets(const State &state, const ShellConfigurations &shells, Columns &on_faces) const
+  {
+    for (unsigned int team = 0; team < layout_.n_teams(); ++team)
+      {
+        std::vector<double> sources; // x and force of each control point, the three components of a shell one after the other
+        if (layout_.team_of_rank(layout_.rank()) == team)
+          for (std::size_t i = 0; i < shells.size(); ++i)
+            for (const ControlPoints &field :
+                 {state.capsules[i].x, ControlPoints(state.capsules[i].force + state.capsules[i].pressure_jump * shells[i]->volume_gradient())})
+              for (const std::vector<double> &column : columns(field))
+                sources.insert(sources.end(), column.begin(), column.end());
+        std::vector<unsigned int> of_team;
+        std::size_t               n = 0;
+        for (unsigned int c = 0; c < layout_.n_capsules(); ++c)
+          if (layout_.team_of(c) == team)
+            {
+              of_team.push_back(c);
+              n += 6 * std::size_t(layout_.capsules()[c].n_control_points());
+            }
+        sources.resize(n);
+        if (layout_.n_teams() > 1)
+          MPI_Bcast(sources.data(), int(n), MPI_DOUBLE, int(layout_.leader(team)), layout_.communicator());
+        const double *next = sources.data();
+        for (const unsigned int c : of_team)
+          {
+            Columns both[2];
+            for (Columns &field : both)
+              for (std::vector<double> &column : field)
+                {
+                  column.assign(next, next + layout_.capsules()[c].n_control_points());
+                  next += column.size();
+                }
+            add_stokeslets(both[0], both[1], faces_.places(), on_faces);
+          }
+      }
+  }
+
+
+  void
   UnboundedLiquid::set(const State &state, const ShellConfigurations &shells, const ShellFields &velocities)
   {
-    if (viscosity_ratio_ != 1. && shells.size() > 1)
+    if (viscosity_ratio_ != 1. && layout_.n_capsules() > 1)
       throw std::logic_error("UnboundedLiquid: another viscosity inside is for one capsule.");
-    const Columns &places = faces_.places();
-    Columns        velocity;
-    velocity.fill(std::vector<double>(places[0].size(), 0.));
-    for (std::size_t c = 0; c < shells.size(); ++c)
-      {
-        const CapsuleState &capsule = state.capsules[c];
-        add_stokeslets(columns(capsule.x), columns(capsule.force + capsule.pressure_jump * shells[c]->volume_gradient()), places, velocity);
-        if (viscosity_ratio_ != 1.)
-          add_other_viscosity(state, *shells[c], velocities[c], velocity);
-      }
+    Columns velocity;
+    velocity.fill(std::vector<double>(faces_.places()[0].size(), 0.));
+    add_all_stokeslets(state, shells, velocity);
+    if (viscosity_ratio_ != 1.)
+      add_other_viscosity(state, *shells[0], velocities[0], velocity);
     faces_.set(velocity);
   }
 } // namespace tanktread

@@ -5,7 +5,9 @@
 #define tanktread_coupling_coupling_h
 
 #include <tanktread/coupling/interface.h>
+#include <tanktread/coupling/shell_guests.h>
 #include <tanktread/coupling/shell_jumps.h>
+#include <tanktread/coupling/shell_layout.h>
 #include <tanktread/coupling/shell_transfer.h>
 #include <tanktread/coupling/shell_viscosity.h>
 #include <tanktread/fluid/point_interpolation.h>
@@ -28,15 +30,16 @@ namespace tanktread
    * enrichment is for P f = f - v (m . f)/(m . v) of each shell only, v its volume gradient and m = M^{-1} v: a constant normal force is the business of its
    * indicator pressure.
    *
-   * Nodal fields are NP x 3 for each capsule and replicated on all ranks; what belongs to a point is on the rank of its fluid cell
-   * alone, so sums over points end in one sum over the ranks. Calls that take fluid vectors or velocity gradients are collective. Forces are told by their
+   * Nodal fields (ShellFields) and shells are those of the rank's own capsules (ShellLayout), NP x 3 for each. Points are on the rank of their fluid cell alone: what
+   * they need goes from the capsule's leader to the ranks where it is present, and sums over points come back (ShellGuests). What belongs to points or to present
+   * capsules stays inside this class. Calls that take fluid vectors or shells are collective, and throw on all ranks alike. Forces are told by their
    * densities g = M^{-1} f, but where `f` stands for them, which costs a solve with M.
    */
   class Coupling
   {
   public:
-    /** For `n_capsules` of this kind; `capsule` is kept by reference. Its coupling surface has second derivatives if the interface is enriched. */
-    Coupling(const Capsule &capsule, unsigned int n_capsules, Interface interface);
+    /** Keeps `layout` by reference. Coupling surfaces have second derivatives if the interface is enriched. */
+    Coupling(const ShellLayout &layout, Interface interface);
 
     /** To be called before attach(), for another viscosity inside. */
     void
@@ -53,24 +56,31 @@ namespace tanktread
     void
     move(const ShellConfigurations &shells);
 
-    /** Largest distance of a control point from where it was when the points were moved last; infinite before that. */
+    /** Largest distance of a control point of any capsule from where it was when the points were moved last; infinite before that. Collective. */
     double
     distance(const ShellConfigurations &shells) const;
 
-    unsigned int
-    n_capsules() const
+    const ShellLayout &
+    layout() const
     {
-      return transfers_.size();
+      return layout_;
     }
-    const Capsule &
-    capsule() const
+    /** The rank's own shells where the points were moved last. */
+    const ShellConfigurations &
+    shells() const
     {
-      return capsule_;
+      return shells_;
     }
-    const ShellTransfer &
-    transfer(const unsigned int c) const
+    /** The capsules that are present on this rank, and the transfer of each. */
+    const ShellGuests &
+    guests() const
     {
-      return transfers_[c];
+      return guests_;
+    }
+    const std::vector<ShellTransfer> &
+    transfers() const
+    {
+      return transfers_;
     }
     const ShellJumps &
     jumps() const
@@ -88,27 +98,27 @@ namespace tanktread
     Viscosity
     viscosity(const ShellConfigurations &shells) const;
 
-    /** Positions of all points in the fluid. */
-    std::vector<dealii::Point<3>>
-    points(const ShellConfigurations &shells) const;
+    /** Positions of the points of these shells. Not collective. */
+    static std::vector<dealii::Point<3>>
+    points(const ShellConfigurations &shells);
 
-    /** Forces of densities g, for several of the calls below. Collective. */
+    /** Forces of densities g, and pressure jumps pi of the same capsules (empty: none), for several of the calls below. Collective. */
     void
-    extend(const ShellFields &g, ExtendedForces &forces) const;
+    extend(const ShellFields &g, ExtendedForces &forces, const std::vector<double> &pressure_jumps = {}) const;
 
     /**
      * Extended forces of the shells in the whole flow: with what another viscosity inside and the undisturbed flow contribute, which is not linear in g. See
      * JumpEnrichment. Collective.
      */
     void
-    extend_whole(const ShellFields &g, ExtendedForces &forces) const;
+    extend_whole(const ShellFields &g, ExtendedForces &forces, const std::vector<double> &pressure_jumps = {}) const;
 
     /**
      * Changes of the forces where densities change by g and the flow by `change`: with that of the contribution which the flow makes with another viscosity inside,
      * to first order. Collective.
      */
     void
-    extend_change(const FluidBlockVector &change, const ShellFields &g, ExtendedForces &forces) const;
+    extend_change(const FluidBlockVector &change, const ShellFields &g, ExtendedForces &forces, const std::vector<double> &pressure_jumps = {}) const;
 
     /** Makes that contribution the one of the flow `fields` with forces of densities g. Nothing with one viscosity or the plain interface. Collective. */
     void
@@ -143,10 +153,6 @@ namespace tanktread
     ShellFields
     undisturbed_velocity(const UndisturbedFlow &flow, const ShellConfigurations &shells) const;
 
-    /** grad u at the points of each shell on this rank, from inside the cells that they lie in. */
-    std::vector<VelocityGradients>
-    velocity_gradients(const FluidBlockVector &u) const;
-
     /** M^{-1} f: control points of the force density per reference area. */
     ShellFields
     density(const ShellFields &f) const;
@@ -167,9 +173,9 @@ namespace tanktread
     void
     spread(const ShellFields &f, FluidBlockVector &load) const;
 
-    /** load += factor R (f + pi v), f being extended and pi of each shell. */
+    /** load += factor R (f + pi v), f and pi being extended. */
     void
-    spread(double factor, const ExtendedForces &f, const std::vector<double> &pressure_jumps, FluidBlockVector &load) const;
+    spread(double factor, const ExtendedForces &f, FluidBlockVector &load) const;
 
     /**
      * load += R M g + sum_q w_q (S dx)_q . grad Phi(X_q) (S g0)_q, where knows_motion() only, the second term being the change of R M g0 when the shells move
@@ -179,39 +185,53 @@ namespace tanktread
     spread_with_motion(const ShellFields &g, const ShellFields &dx, const ShellFields &g0, FluidBlockVector &load) const;
 
     /**
-     * S^T W grad u S of shell c, 3 NP x 3 NP: M^{-1} times it is the change of J u when the shell moves. Collective.
-     *
-     * @param result takes the pattern of AssemblyPattern::block_matrix(), without allocation if it has as many entries already, which must then be these.
+     * S^T W (grad u_inf - G + grad u) S for each of the own shells, 3 NP x 3 NP, u_inf at the points of `shells`, G its gradient at the middle of the shell
+     * (gradient_at_middle()), u from inside the cells that the points lie in: M^{-1} times it is what J u and u_inf - G x change when the shell moves. In the pattern of
+     * AssemblyPattern::block_matrix(). @param u null: leave it out. Collective.
      */
-    void
-    gradient_matrix(unsigned int c, const VelocityGradients &gradients, SparseMatrix &result) const;
+    std::vector<SparseMatrix>
+    gradient_matrices(const ShellConfigurations &shells, const UndisturbedFlow &flow, const FluidBlockVector *u) const;
 
   private:
     /** M (J fields + Q f), the latter unless null. */
     ShellFields
     all_moments(const FluidBlockVector &fields, const ExtendedForces *f) const;
 
-    /** S^T W values of all shells, summed over the ranks. */
+    /** S^T W values, summed over the ranks; with `fluxes` of the present shells, those of the own ones summed too. */
     ShellFields
-    sum_moments(const std::vector<double> &values) const;
+    sum_moments(const std::vector<double> &values, std::vector<double> *fluxes = nullptr) const;
 
-    /** Point forces w S g of all shells. */
+    /** Point forces w S g of all present shells. */
     void
     set_point_forces(const ShellFields &g, std::vector<double> &forces) const;
 
-    const Capsule                      &capsule_;
+    /** Fields of all present capsules by those of the own ones; in `memory`, unless there are no others here. Collective. */
+    const ShellFields &
+    at_guests(const ShellFields &own, ShellFields &memory) const;
+    std::vector<double>
+    at_guests(const std::vector<double> &own) const;
+    /** Shells of all present capsules, of which guests are taken from `known` if they are there. Collective. */
+    ShellConfigurations
+    present_shells(const ShellConfigurations &own, const ShellGuests &guests, const ShellConfigurations &known) const;
+    /** Has the shells compute what moving the points needs of them, and throws on all ranks if one is degenerate. Collective. */
+    void
+    evaluate(const ShellConfigurations &shells) const;
+
+    const ShellLayout                  &layout_;
     const Interface                     interface_;
     ViscosityContrast                   contrast_;
-    std::vector<ShellTransfer>          transfers_;
+    ShellGuests                         guests_;
+    ShellConfigurations                 shells_;    // own ones
+    std::vector<ShellTransfer>          transfers_; // of present ones
     const TaylorHoodSpace              *space_ = nullptr;
     std::unique_ptr<PointInterpolation> interpolation_;
     std::unique_ptr<ShellJumps>         jumps_;
     bool                                moved_ = false; // on this mesh
 
     // Memory of the calls, kept between them.
-    std::vector<dealii::Point<3>> points_;
-    std::vector<double>           normal_forces_; // of the density m of each shell, at the points of this rank
-    mutable std::vector<double>   values_, moments_, further_values_, sums_;
+    std::vector<double>         normal_forces_; // of the density m of each shell, at the points of this rank
+    mutable std::vector<double> values_, moments_, further_values_, sums_;
+    mutable ShellFields         fields_, motions_, loads_;
   };
 
   /**

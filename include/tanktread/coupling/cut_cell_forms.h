@@ -78,11 +78,11 @@ namespace tanktread
 
   /** 2 ((ratio - 1) eps(u_inf), eps(psi_v)) inside the shell for an undisturbed flow with this velocity gradient, for a cell of edge one. */
   std::array<std::array<float, 4>, 8>
-  undisturbed_stress(const NodeDistances              &nodes,
-                     const PartialCellMatrices        &in,
-                     const NodeAmplitudes             &q,
-                     const dealii::Tensor<2, 3>       &flow_gradient,
-                     double                            viscosity_ratio);
+  undisturbed_stress(const NodeDistances        &nodes,
+                     const PartialCellMatrices  &in,
+                     const NodeAmplitudes       &q,
+                     const dealii::Tensor<2, 3> &flow_gradient,
+                     double                      viscosity_ratio);
 
   /** A vector of single precision as one of four numbers. */
   inline Vector4

@@ -4,9 +4,7 @@
 #ifndef tanktread_coupling_interface_quality_h
 #define tanktread_coupling_interface_quality_h
 
-#include <tanktread/coupling/shell_jumps.h>
-
-#include <deal.II/base/mpi.h>
+#include <tanktread/coupling/coupling.h>
 
 #include <vector>
 
@@ -21,10 +19,10 @@ namespace tanktread
 
   /**
    * A cell has kink and jump where the shell separates its 27 nodes. Points in other cells are those of a shell that only grazes a cell between its nodes, of a thin part between nodes, or in a cell that is
-   * not a finest one. Of all shells, by their numbers; zero before they have been moved. Collective.
+   * not a finest one. Of each of the rank's own shells; zero before they have been moved, and with the plain interface. Collective.
    */
   std::vector<InterfaceQuality>
-  interface_quality(const ShellJumps &jumps, MPI_Comm communicator);
+  interface_quality(const Coupling &coupling);
 } // namespace tanktread
 
 #endif

@@ -5,27 +5,12 @@
 #define tanktread_coupling_shell_colours_h
 
 #include <tanktread/fluid/box.h>
-#include <tanktread/surface/types.h>
+#include <tanktread/shell/shell_box.h>
 
-#include <array>
 #include <vector>
 
 namespace tanktread
 {
-  /** Lower and upper corner of the box about a shell's points, in a; along periodic axes wherever they are. */
-  struct ShellBox
-  {
-    std::array<double, 3> lower, upper;
-  };
-
-  /** @param X points, n x 3. */
-  ShellBox
-  shell_box(const ControlPoints &X);
-
-  /** About both. */
-  ShellBox
-  joined(const ShellBox &first, const ShellBox &second);
-
   /**
    * A number 0, 1, ... for each shell, its colour: boxes of the same colour, periodic images included, are at least `margin` from each other along one axis.
    * Each shell takes the least number that no earlier one so near to it has, so there are no more colours than the most neighbours of a shell and one. Time goes

@@ -18,10 +18,11 @@ namespace tanktread
   /** Nodal forces f of all shells where the fluid feels them; without a jump of the pressure, P f, if there are jumps. */
   struct ExtendedForces
   {
-    std::vector<double>      at_points;     // force times area at the points of all shells on this rank, 3 numbers each
-    std::vector<double>      normal_parts;  // multiples of v that P f lacks, for each shell
-    std::vector<VertexArray> at_vertices;   // f_t and f_n of the shells of each colour; only if there are jumps
-    bool                     whole = false; // with all that does not depend on the forces, see JumpEnrichment::complete()
+    std::vector<double>      at_points;      // force times area at the points of all shells on this rank, 3 numbers each
+    std::vector<double>      normal_parts;   // multiples of v that P f lacks, for each shell
+    std::vector<double>      pressure_jumps; // pi of each shell
+    std::vector<VertexArray> at_vertices;    // f_t and f_n of the shells of each colour; only if there are jumps
+    bool                     whole = false;  // with all that does not depend on the forces, see JumpEnrichment::complete()
   };
 
   /**

@@ -17,6 +17,10 @@ namespace tanktread
   /** Velocity gradients at a shell's points on this rank, one row each: entry 3 c + d is du_c/dx_d. */
   using VelocityGradients = Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor>;
 
+  /** grad u_inf at the mean of the control points. */
+  Eigen::Matrix3d
+  gradient_at_middle(const UndisturbedFlow &flow, const ControlPoints &x);
+
   /**
    * With X_q = S x the coupling's points of a shell and W their weights: the sums S^T W over the points of this rank, and the values S at them. The points of
    * all shells are numbered one shell after the other; arrays of
@@ -28,14 +32,15 @@ namespace tanktread
     /** Keeps `capsule` by reference. @param first number of the first point. */
     ShellTransfer(const Capsule &capsule, unsigned int first);
 
-    /** Appends the points of the shell to `points`. */
-    void
-    append_points(const ShellConfiguration &shell, std::vector<dealii::Point<3>> &points) const;
-
     /** To be called when the points have been found in the mesh; `shell` gives their positions. */
     void
     move(const std::shared_ptr<const ShellConfiguration> &shell, const PointInterpolation &points);
 
+    const Capsule &
+    capsule() const
+    {
+      return capsule_;
+    }
     const ShellConfiguration &
     shell() const
     {

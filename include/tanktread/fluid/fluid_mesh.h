@@ -28,6 +28,9 @@ namespace tanktread
     /** All of the key in one number: 7 bits of level, 19 bits an axis. */
     std::uint64_t
     packed() const;
+    /** Inverse of packed(). */
+    static CellKey
+    unpacked(std::uint64_t key);
   };
 
   /**
@@ -50,8 +53,8 @@ namespace tanktread
      * the finest size h, and every cell closer than `grading` cells of size h_l > h to the cells of that size that contain points is not larger than h_l. It
      * depends on the points alone, not on the mesh before. Returns false if that is the mesh chosen last.
      *
-     * @param points on the shell, the same on all ranks, anywhere along periodic axes. Throws NumericalError if one is not between the faces with prescribed
-     * velocity.
+     * @param points on the shells, each on one rank or on several, anywhere along periodic axes. Throws NumericalError, on all ranks, if one is not between the faces with
+     * prescribed velocity.
      */
     bool
     aim_at(const std::vector<dealii::Point<3>> &points);
@@ -74,9 +77,17 @@ namespace tanktread
     bool
     adapt(const std::vector<dealii::Point<3>> &points);
 
-    /** True while every cell closer than `band` finest cells to one of `points` is a finest one, that is, as long as the mesh need not follow the shell. */
+    /** True while every cell closer than `band` finest cells to one of `points` of any rank is a finest one, that is, as long as the mesh need not follow the shells. */
     bool
     covers(const std::vector<dealii::Point<3>> &points, double band = 0.5) const;
+
+    /**
+     * For each set of points the ranks that own cells within two finest cells of one of them, in order: those with parts of cubes of twice the finest size that contain
+     * points, or touch such cubes. Sets may differ from rank to rank. Of the finished mesh. Collective. Throws NumericalError, on all ranks, if a point is not between the
+     * faces with prescribed velocity.
+     */
+    std::vector<std::vector<unsigned int>>
+    ranks_near(const std::vector<std::vector<dealii::Point<3>>> &points) const;
 
     /** A cube of some level and a point's position in it, in [0, 1)^3. */
     struct Place
@@ -151,6 +162,18 @@ namespace tanktread
     KeySet
     wanted_cells(const std::vector<dealii::Point<3>> &points, double band) const;
 
+    /** A point in the cube, on no face of cells inside it. */
+    dealii::Point<3>
+    point_in(const CellKey &cube) const;
+
+    /** Points in the cubes that ranks_near() asks for, one in each. */
+    std::vector<dealii::Point<3>>
+    places_near(const std::vector<dealii::Point<3>> &points) const;
+
+    /** Cubes of a level, told by their packed keys, on the ranks that own their cells: those that one rank or another asks for. Collective. */
+    KeySet
+    at_owners(const KeySet &cubes, unsigned int level) const;
+
     /** Inserts the cells that have to be divided for the sake of the grading. */
     void
     add_grading(const std::vector<dealii::Point<3>> &points, KeySet &wanted) const;
@@ -169,7 +192,7 @@ namespace tanktread
     std::array<int, 3> n_rung_0_;
     unsigned int       coarsest_level_, finest_level_, rung_ = 0;
     bool               aimed_ = false; // has a mesh been chosen?
-    KeySet             wanted_;        // of the mesh chosen last
+    KeySet             wanted_;        // by the points of this rank, of the mesh chosen last
     Triangulation      triangulation_;
   };
 } // namespace tanktread

@@ -9,6 +9,7 @@
 #include <tanktread/fluid/cell_locator.h>
 #include <tanktread/fluid/taylor_hood_space.h>
 
+#include <cstddef>
 #include <vector>
 
 namespace tanktread
@@ -29,6 +30,13 @@ namespace tanktread
     /** Finds the cells of `points` (the same on all ranks). Collective. Throws NumericalError, on all ranks, unless each point is in one cell of one rank. */
     void
     reinit(const std::vector<dealii::Point<3>> &points);
+
+    /**
+     * The same for points that not all ranks know. @param points those that may be in cells of this rank, others among them. @param n_all how many different points
+     * all ranks have together. Throws NumericalError too where a point is in cells of a rank that does not know it.
+     */
+    void
+    reinit(const std::vector<dealii::Point<3>> &points, std::size_t n_all);
 
     /** Which of the points are on this rank, ascending. */
     const std::vector<unsigned int> &

@@ -62,11 +62,11 @@ namespace tanktread
     double          volume_fraction     = 0.;
   };
 
-  /** Shape, energies and stress of each capsule. @param velocities of their control points. Collective. */
+  /** Shape, energies and stress of each of the rank's own capsules. @param velocities of their control points. Collective. */
   std::vector<CapsuleObservables>
   observe(Scene &scene, const State &state, const ShellFields &velocities);
 
-  /** @param capsules of the same state. Collective. */
+  /** Of all capsules, the same on all ranks. @param capsules the rank's own ones in the same state. Collective. */
   SuspensionObservables
   observe_suspension(Scene &scene, const State &state, const std::vector<CapsuleObservables> &capsules);
 

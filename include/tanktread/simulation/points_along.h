@@ -7,6 +7,8 @@
 #include <tanktread/shell/even_mesh.h>
 #include <tanktread/solver/scene.h>
 
+#include <vector>
+
 namespace tanktread
 {
   /** What a step needs so that control points move along the shells beside the material, see EvenMesh and doc/theory.md, section 5.4. */
@@ -16,9 +18,8 @@ namespace tanktread
     /** Longest step, in mu a^2 R / kappa_B, R the smallest radius of curvature; measured on a sphere, 0.2 is too long. */
     static constexpr double longest_step_factor = 0.1;
 
-    explicit PointsAlong(const Scene &scene)
-      : even_mesh_(scene.capsule())
-    {}
+    /** Keeps `scene` by reference. */
+    explicit PointsAlong(const Scene &scene);
 
     /** The velocity of the material at the level from which the step goes. */
     void
@@ -27,7 +28,7 @@ namespace tanktread
       velocity_ = std::move(velocity);
     }
 
-    /** How fast control points of shells near `shells` are to move along them in a step of `length`. Throws NumericalError where a shell is degenerate. */
+    /** How fast control points of the rank's own shells near `shells` are to move along them in a step of `length`. Throws NumericalError where a shell is degenerate. */
     ShellFields
     velocity(const ShellConfigurations &shells, double length) const;
 
@@ -36,8 +37,9 @@ namespace tanktread
     longest_step(const Scene &scene, const State &state);
 
   private:
-    EvenMesh    even_mesh_;
-    ShellFields velocity_;
+    const Scene          &scene_;
+    std::vector<EvenMesh> even_meshes_; // of the kinds of capsules
+    ShellFields           velocity_;
   };
 
   /** Unit vectors along m at the control points. */

@@ -20,11 +20,11 @@ namespace tanktread
     /** Keeps `scene`, `memory` and `log` by reference. */
     ResolutionMonitor(const Parameters &parameters, Scene &scene, WarningMemory &memory, Log &log);
 
-    /** shape and interface of each capsule. Collective. */
+    /** shape and interface of each of the rank's own capsules. Collective. */
     void
     measure(const State &state, std::vector<CapsuleObservables> &capsules) const;
 
-    /** Warns of what is new in this step. @param capsules as measured. Collective. */
+    /** Warns of what is new in this step, in any capsule. @param capsules the rank's own ones as measured. Collective. */
     void
     check(const State &state, const StepObservables &step, const std::vector<CapsuleObservables> &capsules);
 
@@ -33,11 +33,11 @@ namespace tanktread
     finish() const;
 
   private:
-    Scene            &scene_;
-    WarningMemory    &memory_;
-    Log              &log_;
-    const MeshQuality mesh_quality_;
-    ResolutionContext context_;
+    Scene                   &scene_;
+    WarningMemory           &memory_;
+    Log                     &log_;
+    std::vector<MeshQuality> mesh_qualities_; // of the kinds of capsules
+    ResolutionContext        context_;
   };
 } // namespace tanktread
 

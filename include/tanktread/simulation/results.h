@@ -5,6 +5,7 @@
 #define tanktread_simulation_results_h
 
 #include <tanktread/base/csv_writer.h>
+#include <tanktread/coupling/shell_layout.h>
 #include <tanktread/simulation/motion.h>
 #include <tanktread/simulation/observables.h>
 #include <tanktread/simulation/surface_vtu.h>
@@ -18,54 +19,63 @@ namespace tanktread
 {
   /**
    * history.csv (one row a step), contours.csv (cuts parallel to the plane y = 0 through the middle of the capsule at each field output and when
-   * asked for: time, x, z), both with _1, ..., _N in their names where there are N capsules; suspension.csv (all capsules together), shell_NNNN.vtu and
-   * fluid_NNNNN.pvtu with shell.pvd and
-   * fluid.pvd, summary.csv at the end. The first rank writes all but the pieces of the fluid.
+   * asked for: time, x, z), both with _1, ..., _N in their names where there are N capsules; of more than `most_files` capsules one file of each with the column `capsule`, a row a capsule. suspension.csv (all
+   * capsules together), shell_NNNN.vtu and fluid_NNNNN.pvtu with shell.pvd and
+   * fluid.pvd, summary.csv at the end. Each rank writes its piece of the fluid, and of the shells (shell_NNNN.pvtu) where several ranks hold some; the first rank writes the rest.
    */
   class Results
   {
   public:
+    static constexpr unsigned int most_files = 16;
+
     /**
-     * The folder must exist. What cannot be written on the first rank throws OutputError on all. Collective, as are all members.
+     * The folder must exist. What cannot be written on a rank throws OutputError on all. Collective, as are all members. Keeps `layout` by reference.
      *
-     * @param topology control mesh of the capsules. @param surface_subdivisions of its faces in the files of the shells.
+     * @param surface_subdivisions of the faces of control meshes in the files of the shells.
      */
-    Results(const std::string &folder, const TriangleMesh &topology, unsigned int n_capsules, unsigned int surface_subdivisions, MPI_Comm communicator);
+    Results(const std::string &folder, const ShellLayout &layout, unsigned int surface_subdivisions);
+
+    /** One number for each capsule of the scene and each column of history_row(), by capsules; the same on all ranks. */
+    using History = std::vector<double>;
+
+    /** @param capsules the rank's own ones. */
+    static History
+    history(const ShellLayout &layout, const StepObservables &step, const std::vector<CapsuleObservables> &capsules);
 
     void
-    add_history(const StepObservables &step, const std::vector<CapsuleObservables> &capsules, const SuspensionObservables &suspension);
+    add_history(const StepObservables &step, const History &history, const SuspensionObservables &suspension);
 
-    /** Writes shells, contours and fluid. `velocities`: of the control points. */
+    /** Writes shells, contours and fluid. `velocities`: of the control points of the rank's own capsules. */
     void
     add_fields(double time, Scene &scene, const State &state, const ShellFields &velocities);
 
-    /** The cuts of the shells with control points x alone. */
+    /** The cuts of the rank's own shells with control points x alone. */
     void
     add_contours(double time, const ShellFields &x);
 
     /**
      * summary.csv: lines "quantity,value", the first of them `outcome` with the word "done", "steady" or "failed"; with several capsules the quantities of each
-     * have its number at their end. @param of_run what there is once, whatever the number of capsules.
+     * have its number at their end. @param capsules the rank's own ones. @param of_run what there is once, whatever the number of capsules.
      */
     void
     write_summary(const std::string &outcome, const std::vector<MotionSummary> &capsules, const Row &of_run) const;
 
-    /** The last good state of a run that failed: failed_shell.vtu. Returns the file's name. */
+    /** The last good state of a run that failed: failed_shell.vtu or .pvtu. Returns the file's name. */
     std::string
-    write_failed(Scene &scene, const State &state) const;
+    write_failed(const State &state) const;
 
   private:
-    void
-    write_shells(const std::string &file, const Capsule &capsule, const State &state, const ShellFields &velocities) const;
-    void
-    write_contours(double time, const ShellFields &x);
+    /** Writes `stem`.vtu, or pieces and `stem`.pvtu, in the folder. Returns the name without the folder. */
+    std::string
+    write_shells(const std::string &stem, const State &state, const ShellFields &velocities) const;
 
     std::string                             folder_;
+    const ShellLayout                      &layout_;
     MPI_Comm                                communicator_;
     unsigned int                            n_capsules_, n_fields_ = 0;
-    std::vector<std::unique_ptr<CsvWriter>> histories_, contours_; // on the first rank only
-    std::unique_ptr<CsvWriter>              suspension_;           // likewise
-    std::unique_ptr<LimitPicture>           surface_picture_, contour_picture_;
+    std::vector<std::unique_ptr<CsvWriter>> histories_, contours_;                // on the first rank only; of each capsule, or one of all
+    std::unique_ptr<CsvWriter>              suspension_;                          // likewise
+    std::vector<LimitPicture>               surface_pictures_, contour_pictures_; // of the kinds of capsules
     PvdFile                                 shell_series_, fluid_series_;
   };
 } // namespace tanktread

@@ -52,7 +52,7 @@ namespace tanktread
     /** New mesh around the present shells, and others if there are any, with the flows carried over. Returns the linear iterations. */
     unsigned int
     refine_around_shells(const std::vector<ShellFields> &others = {});
-    /** Whether all shapes have hardly changed in three steps; the same on all ranks. */
+    /** Whether the shapes of all capsules have hardly changed in three steps; the same on all ranks. */
     bool
     is_steady(double length);
     /** Whether something that happens at multiples of `interval` (0: always) is due; moves `next` to the next time. */
@@ -79,7 +79,7 @@ namespace tanktread
     void
     add_contours(double length, bool but_now);
     void
-    log_step(const StepObservables &step, const std::vector<CapsuleObservables> &capsules);
+    log_step(const StepObservables &step, const Results::History &history);
     /** Says how the capsules have moved, in the log and in summary.csv. */
     void
     summarise(const std::string &outcome);

@@ -74,6 +74,10 @@ namespace tanktread
     double
     local_error(double length, const ShellFields &x, const ShellFields &normals = {}) const;
 
+    /** Its square times the number of control points: over ranks that have different shells these add. */
+    double
+    squared_error(double length, const ShellFields &x, const ShellFields &normals = {}) const;
+
     /** Factor by which the length of a step with this local error should change so that it meets Time/Tolerance, between 0.3 and 1.5. */
     double
     length_factor(double local_error) const;

@@ -29,6 +29,10 @@ namespace tanktread
                     const std::vector<std::array<int, 3>>                      &faces,
                     const std::vector<std::pair<std::string, Eigen::MatrixXd>> &point_fields);
 
+  /** The record of surfaces that lie in several files of write_surface_vtu(), as a PVTU file. @param pieces relative to its folder. @param point_fields name and number of components of each. Throws OutputError. */
+  void
+  write_surface_pvtu(const std::string &file, const std::vector<std::string> &pieces, const std::vector<std::pair<std::string, unsigned int>> &point_fields);
+
   /**
    * A ParaView data file: the list of the times of a run (12 digits) and of the VTU or PVTU files that belong to them. The file on disk is replaced at each new
    * entry, so a run that is killed leaves a readable series.

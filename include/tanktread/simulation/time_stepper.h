@@ -28,8 +28,8 @@ namespace tanktread
     unsigned int linear_iterations = 0;
     double       local_error       = std::numeric_limits<double>::quiet_NaN(); // of the step, in a, see StepHistory; not a number where it is not known
     double       energy_rise       = std::numeric_limits<double>::quiet_NaN(); // of the shells, over RestEnergy::scale; not a number with flow or inertia
-    ShellFields
-      beyond_mesh; // not empty: no step was made, since shells that end here cut cells that are not finest ones; to be tried again on a mesh around them too
+    std::optional<ShellFields>
+      beyond_mesh; // no step was made, since shells that end here cut cells that are not finest ones; to be tried again on a mesh around them too
   };
 
   /**
@@ -134,9 +134,9 @@ namespace tanktread
     /** Attempts from the extrapolated state, from the last one, and by continuation, the first and the last of these at the first attempt only, the last with Time/Tolerance = 0 only. Returns why they failed, or nothing. */
     std::string
     attempts(const State &state, double time, bool first_attempt, StepResult &result, State &next);
-    /** Makes `next` the present state, if its local error allows it, and sets the length of the step to come. @param reference see first_step_by_second_order(), or empty. */
+    /** Makes `next` the present state, if its local error allows it, and sets the length of the step to come. @param reference see first_step_by_second_order(). */
     bool
-    accept_step(State &state, double time, double shortest, const ShellFields &reference, State &next, StepResult &result);
+    accept_step(State &state, double time, double shortest, const std::optional<ShellFields> &reference, State &next, StepResult &result);
     StepResult
     explicit_step(State &state, double time);
     void

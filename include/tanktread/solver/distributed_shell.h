@@ -1,56 +1,61 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Part of Tanktread: the shell's forces, each rank computing those of its faces.
+// Part of Tanktread: the shells' forces, each rank computing those of its faces.
 
 #ifndef tanktread_solver_distributed_shell_h
 #define tanktread_solver_distributed_shell_h
 
-#include <tanktread/shell/shell.h>
-#include <tanktread/surface/triangle_mesh.h>
-
-#include <mpi.h>
+#include <tanktread/coupling/shell_layout.h>
 
 #include <vector>
 
 namespace tanktread
 {
   /**
-   * Divides the faces of a Shell among the ranks. Every rank knows all control points and gets the sums over all faces. All member functions
-   * but faces() and communicator() are collective, and throw what Shell's throw, on all ranks alike.
+   * Energy, force and tangent of the rank's own capsules, control points and results NP x 3 for each. Where a team has several ranks, these divide the faces of its shells by METIS and
+   * all get the sums. All member functions but faces() are collective on all ranks, and throw what Shell's throw, on all ranks alike.
    */
   class DistributedShell
   {
   public:
-    /** `topology`: the faces of the shell's surface. Keeps `shell` by reference. */
-    DistributedShell(const Shell &shell, const TriangleMesh &topology, MPI_Comm communicator);
+    /** Keeps `layout` by reference. */
+    explicit DistributedShell(const ShellLayout &layout);
 
-    Shell::Energy
-    energy(const ControlPoints &x) const;
+    std::vector<Shell::Energy>
+    energies(const ShellFields &x) const;
 
-    ControlPoints
-    force(const ControlPoints &x) const;
+    ShellFields
+    forces(const ShellFields &x) const;
 
+    /** K = -df/dx of each, and the forces too. */
+    std::vector<SparseMatrix>
+    tangents(const ShellFields &x, Tangent tangent = Tangent::exact) const;
     void
-    force_and_tangent(const ControlPoints &x, ControlPoints &f, SparseMatrix &K, Tangent tangent = Tangent::exact) const;
+    forces_and_tangents(const ShellFields &x, ShellFields &f, std::vector<SparseMatrix> &K, Tangent tangent = Tangent::exact) const;
 
-    /** Those of this rank. */
+    /** Of a kind of capsule, those that this rank works on. */
     const std::vector<unsigned int> &
-    faces() const
+    faces(const unsigned int kind) const
     {
-      return faces_;
+      return faces_[kind];
     }
-    MPI_Comm
-    communicator() const
+    const ShellLayout &
+    layout() const
     {
-      return communicator_;
+      return layout_;
     }
 
   private:
     void
     sum(double *values, Eigen::Index n) const;
+    /** Those of the kind of own capsule i. */
+    const std::vector<unsigned int> &
+    faces_of(const unsigned int i) const
+    {
+      return faces_[layout_.capsules().kind_of(layout_.own()[i])];
+    }
 
-    const Shell              &shell_;
-    MPI_Comm                  communicator_;
-    std::vector<unsigned int> faces_;
+    const ShellLayout                     &layout_;
+    std::vector<std::vector<unsigned int>> faces_;
   };
 } // namespace tanktread
 

@@ -4,9 +4,9 @@
 #ifndef tanktread_solver_implicit_shells_h
 #define tanktread_solver_implicit_shells_h
 
+#include <tanktread/coupling/shell_layout.h>
 #include <tanktread/fluid/linear_solver.h>
 #include <tanktread/solver/block_factorisation.h>
-#include <tanktread/solver/shell_layout.h>
 #include <tanktread/solver/shell_multigrid.h>
 #include <tanktread/solver/solver_memory.h>
 
@@ -36,7 +36,11 @@ namespace tanktread
   {
   public:
     /** All are kept by reference. */
-    ImplicitShells(const Capsule &capsule, const ShellLayout &layout, SolverMemory &memory);
+    ImplicitShells(const ShellLayout &layout, SolverMemory &memory);
+
+    /** To be called when ShellLayout::assign() has given capsules to other teams: forgets the operators. */
+    void
+    reassign();
 
     /**
      * Whether there are operators that are worth keeping for a step of length tau: one of them has factors; made for one that differs by a factor of 1.5 at
@@ -45,17 +49,10 @@ namespace tanktread
     bool
     serves(double tau) const;
 
-    /** Whether this rank has to know the operator of capsule c. */
-    bool
-    works_on(const unsigned int c) const
-    {
-      return layout_.works_on(c);
-    }
-
     using Operators = std::vector<ImplicitOperator>;
 
     /**
-     * Replaces the operators, one for each capsule that this rank works on, empty ones for the others; by those that `definite` makes, if it is given, where a
+     * Replaces the operators, one for each of the rank's own capsules; by those that `definite` makes, if it is given, where a
      * V-cycle shows that one of them is indefinite.
      * Collective; throws NumericalError on all ranks when one is singular.
      */
@@ -84,23 +81,26 @@ namespace tanktread
       return memory_.n_renewals;
     }
 
-    /** Z_tau S^{-1} force of capsule c on the rank that owns it, zero on the others. Collective. */
+    /** Z_tau S^{-1} force of own capsule i on the team's leader, zero on the others. Collective in the team. */
     ControlPoints
-    damped(unsigned int c, const ControlPoints &force) const;
+    damped(unsigned int i, const ControlPoints &force) const;
 
-    /** S^{-1} force of capsule c on the rank that owns it, zero on the others: about how fast the shell moves to balance a force that is missing. Collective. */
+    /** S^{-1} force of own capsule i on the team's leader, zero on the others: about how fast the shell moves to balance a force that is missing. Collective in the team. */
     ControlPoints
-    velocity(unsigned int c, const ControlPoints &force) const;
+    velocity(unsigned int i, const ControlPoints &force) const;
 
   private:
     void
     judge(const LinearReport &report);
 
-    const ShellLayout                               &layout_;
-    SolverMemory                                    &memory_;
-    std::vector<std::unique_ptr<ShellMultigrid>>     multigrids_;  // of the capsules that this rank works on, if there are coarser control meshes
-    std::vector<std::unique_ptr<BlockFactorisation>> factors_;     // of the capsules of this rank
-    std::vector<char>                                has_factors_; // and uses them, as all ranks know
+    const ShellLayout                                &layout_;
+    SolverMemory                                     &memory_;
+    std::vector<std::shared_ptr<const LoopHierarchy>> hierarchies_; // of the kinds of capsules
+    // Of the rank's own capsules.
+    std::vector<std::unique_ptr<ShellMultigrid>>     multigrids_;              // if there are coarser control meshes
+    std::vector<std::unique_ptr<BlockFactorisation>> factors_;                 // on the team's leader
+    std::vector<char>                                has_factors_;             // and it uses them, as the team knows
+    bool                                             some_has_factors_ = true; // of all capsules
   };
 } // namespace tanktread
 

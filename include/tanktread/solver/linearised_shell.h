@@ -85,19 +85,17 @@ namespace tanktread
   {
   public:
     /**
-     * @param c number of the capsule in `coupling`. @param shell its shell at state.x. @param velocity of the control points, J u + u_inf(x). @param
-     * velocity_gradient of u at the points of this shell on this rank, whose Gamma is meant;
-     * that of the undisturbed flow is added. `coupling` is kept by reference.
+     * @param shell at state.x. @param velocity of the control points, J u + u_inf(x). @param stiffness K there. @param gradient S^T W (grad u_inf - G + grad u) S, what
+     * Gamma is beside its part G of the undisturbed flow at the middle of the shell (Coupling::gradient_matrices()), or empty: that is all. The latter two are not read
+     * if tau = 0.
      *
-     * Collective. Throws NumericalError when a matrix is singular.
+     * Throws NumericalError when a matrix is singular.
      */
-    LinearisedShell(const DistributedShell                          &elasticity,
-                    const Coupling                                  &coupling,
-                    unsigned int                                     c,
-                    const CapsuleState                              &state,
+    LinearisedShell(const CapsuleState                              &state,
                     const std::shared_ptr<const ShellConfiguration> &shell,
                     const ControlPoints                             &velocity,
-                    const VelocityGradients                         &velocity_gradient,
+                    SparseMatrix                                     stiffness,
+                    SparseMatrix                                     gradient,
                     const Linearisation                             &choice);
 
     /** dx for r_x = 0, r_V = 0 and given velocity moments S^T W Phi du; zero if tau = 0. */
@@ -180,25 +178,23 @@ namespace tanktread
   };
 
 
-  /** The rows of all shells, with the operators that the force rows are multiplied by. */
+  /** The rows of the rank's own shells, with the operators that the force rows are multiplied by. */
   class LinearisedShells
   {
   public:
     /**
-     * @param shells at the state's positions. @param velocities of the control points, J u + u_inf(x). @param velocity_gradients of u at the points of each
-     * shell on this rank. @param implicit_shells are renewed unless they serve for
+     * @param shells at the state's positions. @param velocities of the control points, J u + u_inf(x). @param implicit_shells are renewed unless they serve for
      * tau, with the positive tangent where the exact one makes them indefinite; kept by reference, and not to be changed as long as this object is in use, as `coupling`.
      *
-     * Collective. Throws NumericalError when one of the matrices is singular.
+     * Collective. Throws NumericalError on all ranks when one of the matrices is singular.
      */
-    LinearisedShells(const DistributedShell               &elasticity,
-                     const Coupling                       &coupling,
-                     const State                          &state,
-                     const ShellConfigurations            &shells,
-                     const ShellFields                    &velocities,
-                     const std::vector<VelocityGradients> &velocity_gradients,
-                     const Linearisation                  &choice,
-                     ImplicitShells                       &implicit_shells);
+    LinearisedShells(const DistributedShell    &elasticity,
+                     const Coupling            &coupling,
+                     const State               &state,
+                     const ShellConfigurations &shells,
+                     const ShellFields         &velocities,
+                     const Linearisation       &choice,
+                     ImplicitShells            &implicit_shells);
 
     const LinearisedShell &
     operator[](const unsigned int c) const
@@ -215,7 +211,7 @@ namespace tanktread
     ShellFields
     displacements(const ShellFields &velocity_moments) const;
 
-    /** ImplicitShells::damped(), on the rank that owns the capsule only; the force itself if tau = 0. */
+    /** ImplicitShells::damped(), on the leader of the team only; the force itself if tau = 0. Collective in the team. */
     ControlPoints
     damped(unsigned int c, const ControlPoints &force) const;
 

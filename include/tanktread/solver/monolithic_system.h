@@ -5,11 +5,11 @@
 #define tanktread_solver_monolithic_system_h
 
 #include <tanktread/base/timings.h>
+#include <tanktread/coupling/shell_layout.h>
 #include <tanktread/fluid/fluid.h>
 #include <tanktread/fluid/inertia.h>
 #include <tanktread/solver/linearised_shell.h>
 #include <tanktread/solver/pressure_jump_response.h>
-#include <tanktread/solver/shell_layout.h>
 
 namespace tanktread
 {
@@ -47,12 +47,12 @@ namespace tanktread
 
     /** The change of forces that belongs to unknowns. Collective. */
     void
-    extend(const FluidBlockVector &unknowns, const ShellFields &densities, ExtendedForces &forces) const
+    extend(const FluidBlockVector &unknowns, const ShellFields &densities, const std::vector<double> &pressure_jumps, ExtendedForces &forces) const
     {
       if (jumps_follow_)
-        shells_.coupling().extend_change(unknowns, densities, forces);
+        shells_.coupling().extend_change(unknowns, densities, forces, pressure_jumps);
       else
-        shells_.coupling().extend(densities, forces);
+        shells_.coupling().extend(densities, forces, pressure_jumps);
     }
 
     void

@@ -80,6 +80,12 @@ namespace tanktread
     {
       return implicit_shells_;
     }
+    /** To be called when ShellLayout::assign() has given capsules to other teams. */
+    void
+    reassign()
+    {
+      implicit_shells_.reassign();
+    }
 
   private:
     using Points = TimeLevel::Points;
@@ -127,7 +133,7 @@ namespace tanktread
     follow_shells(State &state, Progress &progress);
     LinearisedShells
     linearised(const State &state, const Linearisation &choice);
-    /** Part of the norm that needs no linearisation. */
+    /** Part of the norm that needs no linearisation. Collective. */
     double
     speed(const Residual &r, double tau) const;
     double
@@ -201,8 +207,8 @@ namespace tanktread
     TimeLevel              &level_;
     SolverMemory           &memory_;
     Timings                &timings_;
-    const ShellLayout       layout_;
-    const double            volume_; // V0 of a capsule
+    const ShellLayout      &layout_;
+    const double            volume_; // V0, mean over the capsules
     ImplicitShells          implicit_shells_;
     KrylovBasis             krylov_basis_;
 

@@ -43,21 +43,22 @@ namespace tanktread
   {
   public:
     /**
-     * @param coupling has its points where the shells are. @param volume of a capsule over the mean viscosity, in place of s where that is not found. @param
+     * @param coupling has its points where the shells are. @param viscosity mean of inside and outside: the volume of a capsule over it stands in place of s where that is
+     * not found. @param
      * basis memory that may be used. @param tolerance of that solution. Collective.
      */
     PressureJumpResponse(const FluidOperator &fluid,
                          const StokesInverse &preconditioner,
                          const Coupling      &coupling,
-                         double               volume,
+                         double               viscosity,
                          KrylovBasis         &basis,
                          double               tolerance = 0.1);
 
-    /** pi of all capsules for the rows r_p of the pressures and r_pi of the fluxes. Collective. */
+    /** pi of the rank's own capsules for the rows r_p of the pressures and r_pi of the fluxes. Collective. */
     std::vector<double>
     pressure_jumps(const FluidVector &r_p, std::vector<double> r_pi) const;
 
-    /** s of all capsules. */
+    /** s of the rank's own capsules. */
     const std::vector<double> &
     schur_complements() const
     {
@@ -68,14 +69,14 @@ namespace tanktread
     /** The capsule that each pressure of this rank belongs to, if there are several. */
     void
     assign_nodes(const TaylorHoodSpace &space, const Coupling &coupling);
-    /** Sum of products of pressures, for each capsule. */
+    /** Sum of products of pressures, for each of the rank's own capsules. Collective. */
     std::vector<double>
     products(const FluidVector &p, const FluidVector &q) const;
 
-    MPI_Comm                  communicator_;
+    const ShellLayout        &layout_;
     FluidVector               e_; // of all capsules together
     std::vector<double>       s_;
-    std::vector<unsigned int> capsule_of_node_;
+    std::vector<unsigned int> capsule_of_node_; // by its number
   };
 } // namespace tanktread
 

@@ -15,24 +15,39 @@
 
 namespace tanktread
 {
-  /** What a scene is made of: all that a run, a benchmark or a test has to say about it. */
-  struct SceneDescription
+  /** What capsules of a kind are made of. */
+  struct CapsuleKind
   {
-    Box                               box;
-    Liquids                           liquids;
-    FittedShape                       shape; // of each capsule, about the origin
+    FittedShape                       shape; // about the origin
     std::optional<ControlPoints>      stress_free;
-    std::vector<Place>                places = {Place()};
     ShellParameters                   shell;
     ShellModuli                       moduli{1., 0.};
     unsigned int                      shell_quadrature = 3; // points a face
     std::optional<TriangleQuadrature> coupling_quadrature;  // of each face; unless given that which the finest cells ask for
-    FluidMeshParameters               fluid_mesh;
-    SolverParameters                  solver;
+  };
+
+  /** What a scene is made of: all that a run, a benchmark or a test has to say about it. */
+  struct SceneDescription
+  {
+    Box                       box;
+    Liquids                   liquids;
+    std::vector<CapsuleKind>  kinds  = {CapsuleKind()};
+    std::vector<Place>        places = {Place()};
+    std::vector<unsigned int> kind_of;     // of the capsule at each place, a number in `kinds`; empty: all of the first
+    unsigned int              n_teams = 0; // see ShellLayout
+    FluidMeshParameters       fluid_mesh;
+    SolverParameters          solver;
+
+    /** The kind of capsule c. */
+    const CapsuleKind &
+    kind(const unsigned int c) const
+    {
+      return kinds[kind_of.empty() ? 0 : kind_of[c]];
+    }
   };
 
   /**
-   * The objects of a scene and who knows whom: the liquid, the kind of capsule, their coupling, a time level of all unknowns and its solver, with their memory. The program, the benchmarks and the tests build scenes through this class.
+   * The objects of a scene and who knows whom: the liquid, the kinds of capsules, who holds which of them, their coupling, a time level of all unknowns and its solver, with their memory. The program, the benchmarks and the tests build scenes through this class.
    * All members but the plain accessors are collective.
    */
   class Scene
@@ -41,7 +56,7 @@ namespace tanktread
     /** Throws what Capsule and Fluid throw. There is no mesh before refine_around(). */
     Scene(SceneDescription description, MPI_Comm communicator);
 
-    /** The capsules where the description has them, without forces and flow. */
+    /** The rank's own capsules where the description has them, without forces and flow. */
     State
     initial_state() const;
 
@@ -75,10 +90,22 @@ namespace tanktread
     {
       return communicator_;
     }
-    const Capsule &
-    capsule() const
+    /** All capsules by their numbers. */
+    const Capsules &
+    capsules() const
     {
-      return capsule_;
+      return capsules_;
+    }
+    const ShellLayout &
+    layout() const
+    {
+      return layout_;
+    }
+    /** The kind of the rank's own capsule i. */
+    const Capsule &
+    capsule(const unsigned int i) const
+    {
+      return layout_.capsule(i);
     }
     Fluid &
     fluid()
@@ -125,7 +152,8 @@ namespace tanktread
     Timings                timings_;
     SolverMemory           memory_;
     Fluid                  fluid_;
-    const Capsule          capsule_;
+    const Capsules         capsules_;
+    ShellLayout            layout_;
     const DistributedShell elasticity_;
     Coupling               coupling_;
     TimeLevel              level_;

@@ -107,14 +107,14 @@ namespace tanktread
     /** Viscosity of shells where the state has them, and the load of the undisturbed flow with it. Nothing with one viscosity. Collective. */
     void
     set_viscosity(const State &state);
-    /** How far the shells are from where the viscosity was set; zero with one viscosity. */
+    /** How far the shells are from where the viscosity was set; zero with one viscosity. Collective. */
     double
     viscosity_distance(const State &state) const;
     /** Makes the viscous part of the jumps that of the present flow. Collective. */
     void
     update_jumps(const State &state);
 
-    /** The shells of a state, computed once for the same positions. */
+    /** The rank's own shells of a state, computed once for the same positions. */
     const ShellConfigurations &
     shells(const State &state);
 

@@ -6,6 +6,7 @@
 
 #include <tanktread/fluid/prescribed_velocity.h>
 #include <tanktread/shell/shell_configuration.h>
+#include <tanktread/coupling/shell_layout.h>
 #include <tanktread/solver/state.h>
 
 namespace tanktread
@@ -29,8 +30,8 @@ namespace tanktread
     /** Shells may not come nearer to a face, in a: the cells there could not follow the flow between. */
     static constexpr double least_distance = 0.5;
 
-    /** Keeps `space` by reference. Throws what PrescribedVelocity throws. @param viscosity_ratio inside over outside. Collective. */
-    UnboundedLiquid(const TaylorHoodSpace &space, double viscosity_ratio);
+    /** Keeps `space` and `layout` by reference. Throws what PrescribedVelocity throws. @param viscosity_ratio inside over outside. Collective. */
+    UnboundedLiquid(const TaylorHoodSpace &space, const ShellLayout &layout, double viscosity_ratio);
 
     /** To be called when the viscosity has changed; kept by reference. Collective. */
     void
@@ -57,7 +58,12 @@ namespace tanktread
     void
     add_other_viscosity(const State &state, const ShellConfiguration &shell, const ControlPoints &velocity, Columns &on_faces);
 
+    /** Stokeslets of the forces of all capsules, those of one team after the other: each rank has faces of its own. Collective. */
+    void
+    add_all_stokeslets(const State &state, const ShellConfigurations &shells, Columns &on_faces) const;
+
     const TaylorHoodSpace    &space_;
+    const ShellLayout        &layout_;
     const double              viscosity_ratio_;
     PrescribedVelocity        faces_;
     const StokesOperator      uniform_; // viscosity 1 everywhere
