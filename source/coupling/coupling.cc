@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -123,12 +122,8 @@ namespace tanktread
     normal_forces_.resize(3 * interpolation_->local_points().size());
     for (const ShellTransfer &transfer : transfers_)
       transfer.set_point_forces(transfer.shell().normal_field(), normal_forces_);
-    std::vector<unsigned int> numbers(n_capsules());
-    std::vector<ShellBox>     boxes;
-    std::iota(numbers.begin(), numbers.end(), 0);
-    for (const auto &shell : shells)
-      boxes.push_back(shell_box(shell->points()));
-    jumps_->move(transfers_, numbers, boxes, *interpolation_);
+    if (!jumps_->are_none())
+      jumps_->move(transfers_, guests_.present(), boxes_of_all(layout_, shells), *interpolation_);
     moved_ = true;
   }
 

@@ -97,7 +97,7 @@ namespace tanktread
   void
   ShellJumps::set_sides()
   {
-    sides_.assign(space_.pressure->n_owned(), unknown_side);
+    sides_.assign(space_.pressure->n_owned() + 1, unknown_side); // and one, so that a rank without cells does not take them for none
     for (const JumpEnrichment &colour : colours_)
       for (const NearVertex &vertex : colour.near_vertices())
         {

@@ -13,25 +13,6 @@ namespace tanktread
 {
   namespace
   {
-    /** Lower and upper corner of the box about each shell of the scene, in the order of numbers. Collective. */
-    std::vector<PointBox>
-    boxes_of_all(const ShellLayout &layout, const ShellConfigurations &own)
-    {
-      std::vector<double> corners;
-      for (const auto &shell : own)
-        {
-          const PointBox box = point_box(*shell);
-          corners.insert(corners.end(), box.low.data(), box.low.data() + 3);
-          corners.insert(corners.end(), box.high.data(), box.high.data() + 3);
-        }
-      const std::vector<double> all = layout.gathered(corners, 6);
-      std::vector<PointBox>     result;
-      for (std::size_t i = 0; i < all.size(); i += 6)
-        result.push_back({Eigen::Map<const Eigen::RowVector3d>(&all[i]), Eigen::Map<const Eigen::RowVector3d>(&all[i + 3])});
-      return result;
-    }
-
-
     /** The nearest gap that any rank has found, the same on all. Collective. */
     ShellGap
     least(const ShellGap &found, const MPI_Comm communicator)
@@ -44,6 +25,24 @@ namespace tanktread
       return result;
     }
   } // namespace
+
+
+  std::vector<ShellBox>
+  boxes_of_all(const ShellLayout &layout, const ShellConfigurations &own)
+  {
+    std::vector<double> corners;
+    for (const auto &shell : own)
+      {
+        const ShellBox box = shell_box(shell->points());
+        corners.insert(corners.end(), box.lower.begin(), box.lower.end());
+        corners.insert(corners.end(), box.upper.begin(), box.upper.end());
+      }
+    const std::vector<double> all = layout.gathered(corners, 6);
+    std::vector<ShellBox>     result;
+    for (std::size_t i = 0; i < all.size(); i += 6)
+      result.push_back({{{all[i], all[i + 1], all[i + 2]}}, {{all[i + 3], all[i + 4], all[i + 5]}}});
+    return result;
+  }
 
 
   ShellConfigurations
@@ -82,7 +81,8 @@ namespace tanktread
     NumberedShells result{layout.own(), own};
     if (layout.n_teams() == 1)
       return result;
-    PointBox of_cells{Eigen::RowVector3d::Constant(std::numeric_limits<double>::max()), Eigen::RowVector3d::Constant(-std::numeric_limits<double>::max())};
+    constexpr double      huge = std::numeric_limits<double>::max();
+    ShellBox              of_cells{{{huge, huge, huge}}, {{-huge, -huge, -huge}}};
     std::array<double, 3> periods;
     bool                  has_cells = false;
     for (const auto &cell : mesh.triangulation().active_cell_iterators())
@@ -91,13 +91,13 @@ namespace tanktread
           has_cells = true;
           for (unsigned int d = 0; d < 3; ++d)
             {
-              of_cells.low[d]  = std::min(of_cells.low[d], cell->vertex(0)[d]);
-              of_cells.high[d] = std::max(of_cells.high[d], cell->vertex(7)[d]);
+              of_cells.lower[d] = std::min(of_cells.lower[d], cell->vertex(0)[d]);
+              of_cells.upper[d] = std::max(of_cells.upper[d], cell->vertex(7)[d]);
             }
         }
     for (unsigned int d = 0; d < 3; ++d)
       periods[d] = mesh.box().is_periodic(d) ? mesh.box().side[d] : std::numeric_limits<double>::infinity();
-    const std::vector<PointBox> boxes = boxes_of_all(layout, own);
+    const std::vector<ShellBox> boxes = boxes_of_all(layout, own);
     std::vector<unsigned int>   further;
     for (unsigned int c = 0; c < boxes.size(); ++c)
       if (has_cells && layout.team_of(c) != layout.team_of_rank(layout.rank()) && box_distance(of_cells, boxes[c], periods) == 0.)
@@ -114,7 +114,7 @@ namespace tanktread
   {
     if (layout.n_teams() == 1)
       return smallest_gap(own, periods, reach);
-    const std::vector<PointBox> boxes = boxes_of_all(layout, own);
+    const std::vector<ShellBox> boxes = boxes_of_all(layout, own);
     std::vector<double>         nearest(boxes.size(), std::numeric_limits<double>::infinity()); // from the own ones
     for (const unsigned int c : layout.own())
       for (unsigned int d = 0; d < boxes.size(); ++d)
