@@ -24,8 +24,8 @@ namespace tanktread
     SceneDescription result;
     result.box                    = box_side;
     result.liquids.flow.amplitude = simple_shear();
-    result.shape                  = make_capsule({}, std::max(1l, std::lround(std::log2(cells / 8.))));
-    result.moduli                 = {1. / shear_number, reduced_bending / shear_number};
+    result.kinds[0].shape         = make_capsule({}, std::max(1l, std::lround(std::log2(cells / 8.))));
+    result.kinds[0].moduli        = {1. / shear_number, reduced_bending / shear_number};
     result.fluid_mesh             = {box_side / cells, 2.5, 1.5};
     result.solver.interface       = interface;
     return result;
@@ -108,9 +108,9 @@ namespace tanktread
       if (!scene_.covers(state_))
         stepper_.refine_around(state_);
       StepResult result = stepper_.step(state_, time_, false);
-      if (!result.beyond_mesh.empty())
+      if (result.beyond_mesh)
         {
-          stepper_.refine_around(state_, {result.beyond_mesh});
+          stepper_.refine_around(state_, {*result.beyond_mesh});
           const StepResult first = std::exchange(result, stepper_.step(state_, time_, true));
           result.newton_iterations += first.newton_iterations;
           result.linear_iterations += first.linear_iterations;

@@ -40,7 +40,7 @@ namespace tanktread
   {
     SceneDescription description = sheared_sphere(32);
     if (!bending)
-      description.moduli.bending_modulus = 0.;
+      description.kinds[0].moduli.bending_modulus = 0.;
     Scene    scene(description, MPI_COMM_WORLD);
     Stepping stepping(scene, 0.2);
     while (stepping.time() < 6. - 1e-9)
@@ -75,7 +75,7 @@ namespace tanktread
   inline SubdivisionSurface
   curved_surface(const oracle::GivenForces &scene)
   {
-    return {scene.scene.capsule().topology(), *scene.scene.description().coupling_quadrature, Derivatives::second};
+    return {scene.scene.capsule().topology(), *scene.scene.description().kinds[0].coupling_quadrature, Derivatives::second};
   }
 
 

@@ -36,6 +36,17 @@ namespace
   }
 
 
+  /** One capsule of that shape with a shell of these moduli. */
+  Capsules
+  same_shape(const Capsule &capsule, const ShellModuli &moduli)
+  {
+    const CapsuleQuadrature                     rule{triangle_quadrature(3), triangle_quadrature(3)};
+    std::vector<std::unique_ptr<const Capsule>> kinds;
+    kinds.push_back(std::make_unique<Capsule>(FittedShape{capsule.topology(), capsule.initial()}, rule, ShellParameters(), moduli));
+    return {std::move(kinds), {0}};
+  }
+
+
   /** All shells deformed, at their places. */
   State
   deformed_state(const Scene &scene)
@@ -135,13 +146,15 @@ namespace
                    const double         tau,
                    Entries             &entries)
   {
-    const Capsule         &capsule = scene.capsule();
-    const Fluid           &fluid   = scene.fluid();
-    const Shell            shell(capsule.surface(), {}, {stiffness.stretching / tau, stiffness.bending / tau}, capsule.initial());
-    const DistributedShell distributed(shell, capsule.topology(), MPI_COMM_WORLD);
-    const ShellLayout      layout(1, capsule.n_control_points(), MPI_COMM_WORLD);
+    const Capsule         &capsule  = scene.capsule();
+    const Fluid           &fluid    = scene.fluid();
+    const Capsules         with_law = same_shape(capsule, {stiffness.stretching / tau, stiffness.bending / tau});
+    const Shell           &shell    = with_law[0].shell();
+    const ShellLayout      layout_with_law(with_law, MPI_COMM_WORLD);
+    const DistributedShell distributed(layout_with_law);
+    const ShellLayout     &layout = scene.layout();
     SolverMemory           memory;
-    ImplicitShells         implicit(capsule, layout, memory);
+    ImplicitShells         implicit(layout, memory);
     State                  state                 = scene.initial_state();
     state.capsules[0].x                          = x;
     state.capsules[0].force                      = shell.force(x);
@@ -154,13 +167,12 @@ namespace
                                            state,
                                            shell_configurations(capsule, {x}),
                                            velocities,
-                                           std::vector<VelocityGradients>{VelocityGradients::Zero(scene.coupling().transfer(0).n_points(), 9)},
                                            Linearisation{tau, scene.level().finest_cell(), 1e-8, PointDerivatives::frozen, tangent, scene.level().flow()},
                                            implicit);
     });
     const MonolithicOperator          matrix(fluid.stokes(), *linear, layout);
     KrylovBasis                       basis;
-    const PressureJumpResponse        jumps({fluid.stokes()}, fluid.preconditioner(), scene.coupling(), capsule.volume(), basis);
+    const PressureJumpResponse        jumps({fluid.stokes()}, fluid.preconditioner(), scene.coupling(), 1., basis);
     const MonolithicPreconditioner    preconditioner(fluid.preconditioner(), *linear, layout, jumps);
     const FluidBlockVector            rhs = loads(fluid, *linear, layout, shell.force(deformed(capsule)));
     LinearReport                      report;

@@ -92,17 +92,13 @@ namespace tanktread::oracle
     Flow
     flow(const ShellFields &F, const double tolerance, const unsigned int n_sweeps = 0)
     {
-      const ShellLayout              layout(shells.size(), scene.capsule().n_control_points(), MPI_COMM_WORLD);
-      ImplicitShells                 implicit_shells(scene.capsule(), layout, scene.memory());
+      const ShellLayout             &layout = scene.layout();
+      ImplicitShells                 implicit_shells(layout, scene.memory());
       const LinearisedShells         linear = at_rest(implicit_shells);
       Flow                           result{layout.vector(fluid.space()), {}, {}, 0};
       const MonolithicOperator       matrix(fluid.stokes(), linear, layout);
       KrylovBasis                    basis;
-      const PressureJumpResponse     jumps({fluid.stokes()},
-                                       fluid.preconditioner(),
-                                       coupling,
-                                       shells[0]->volume() / scene.level().liquids().mean_viscosity(),
-                                       basis);
+      const PressureJumpResponse     jumps({fluid.stokes()}, fluid.preconditioner(), coupling, scene.level().liquids().mean_viscosity(), basis);
       const MonolithicPreconditioner preconditioner(fluid.preconditioner(), linear, layout, jumps);
       for (unsigned int sweep = 0; sweep <= n_sweeps; ++sweep)
         {
@@ -116,7 +112,7 @@ namespace tanktread::oracle
           if (scene.level().unbounded_liquid() != nullptr)
             subtract_faces(F, result, rhs);
           coupling.extend_whole(coupling.density(F), forces);
-          coupling.spread(1., forces, std::vector<double>(F.size(), 0.), rhs);
+          coupling.spread(1., forces, rhs);
           const LinearReport report = solve_fgmres(matrix, preconditioner, result.fields, rhs, tolerance, 300);
           if (!report.converged)
             throw NumericalError("The flow of given forces did not converge in 300 iterations.");
@@ -173,14 +169,15 @@ namespace tanktread::oracle
       result.liquids.unbounded = unbounded;
       if (unbounded)
         result.box.faces.fill(Faces::prescribed);
-      result.liquids.flow.amplitude  = contrast.flow;
-      result.liquids.viscosity_ratio = contrast.ratio;
-      result.shape                   = shape;
-      result.places                  = {centres.begin(), centres.end()};
-      result.moduli                  = {0., 0.};
-      result.coupling_quadrature     = coupling_quadrature(shape.topology, shape.control_points, Interface::enriched, finest_cell_of(side, mesh));
-      result.fluid_mesh              = mesh;
-      result.solver.interface        = interface;
+      result.liquids.flow.amplitude       = contrast.flow;
+      result.liquids.viscosity_ratio      = contrast.ratio;
+      result.kinds[0].shape               = shape;
+      result.places                       = {centres.begin(), centres.end()};
+      result.n_teams                      = 1; // so that all ranks know all shells
+      result.kinds[0].moduli              = {0., 0.};
+      result.kinds[0].coupling_quadrature = coupling_quadrature(shape.topology, shape.control_points, Interface::enriched, finest_cell_of(side, mesh));
+      result.fluid_mesh                   = mesh;
+      result.solver.interface             = interface;
       return result;
     }
 
@@ -213,16 +210,12 @@ namespace tanktread::oracle
     LinearisedShells
     at_rest(ImplicitShells &implicit_shells) const
     {
-      ShellFields                    velocities;
-      std::vector<VelocityGradients> gradients;
-      for (unsigned int c = 0; c < shells.size(); ++c)
-        {
-          velocities.push_back(ControlPoints::Zero(shells[c]->x().rows(), 3));
-          gradients.push_back(VelocityGradients::Zero(coupling.transfer(c).n_points(), 9));
-        }
+      ShellFields velocities;
+      for (const auto &shell : shells)
+        velocities.push_back(ControlPoints::Zero(shell->x().rows(), 3));
       Linearisation choice; // tau = 0
       choice.derivatives = PointDerivatives::frozen;
-      return {scene.elasticity(), coupling, state, shells, velocities, std::move(gradients), choice, implicit_shells};
+      return {scene.elasticity(), coupling, state, shells, velocities, choice, implicit_shells};
     }
   };
 

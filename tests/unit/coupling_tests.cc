@@ -45,7 +45,7 @@ namespace
     {
       SceneDescription result;
       result.box                      = 4.;
-      result.shape                    = make_capsule({}, 2);
+      result.kinds[0].shape           = make_capsule({}, 2);
       result.fluid_mesh.coarsest_cell = 1.;
       result.fluid_mesh.finest_cell   = 0.25;
       result.solver.interface         = Interface::plain;
@@ -127,9 +127,7 @@ TEST(Coupling, MotionOfPointsIsTheDerivative)
   const double scale = std::abs(expected) + 1.;
   EXPECT_NEAR(load * s.u, expected, 1e-5 * scale);
 
-  SparseMatrix gamma;
-  for (unsigned int call = 0; call < 2; ++call) // the second into the same matrix
-    s.coupling.gradient_matrix(0, s.coupling.velocity_gradients(s.u)[0], gamma);
+  const SparseMatrix    gamma    = s.coupling.gradient_matrices(s.coupling.shells(), {}, &s.u)[0];
   const ControlPoints   g        = s.coupling.density({s.f})[0];
   const Eigen::VectorXd gamma_dx = gamma * Eigen::Map<const Eigen::VectorXd>(dx.data(), dx.size());
   EXPECT_NEAR(Eigen::Map<const Eigen::VectorXd>(g.data(), g.size()).dot(gamma_dx), expected, 1e-5 * scale);
@@ -167,9 +165,8 @@ TEST(Coupling, SameOnAnyNumberOfRanks)
   EXPECT_LT((moments - all_moments).norm(), 1e-12 * all_moments.norm());
   EXPECT_LT((together.interpolated(u) - alone.interpolated(all_u)).norm(), 1e-12 * alone.interpolated(all_u).norm());
 
-  SparseMatrix gamma, all_gamma;
-  together.coupling.gradient_matrix(0, together.coupling.velocity_gradients(u)[0], gamma);
-  alone.coupling.gradient_matrix(0, alone.coupling.velocity_gradients(all_u)[0], all_gamma);
+  const SparseMatrix gamma     = together.coupling.gradient_matrices(together.coupling.shells(), {}, &u)[0];
+  const SparseMatrix all_gamma = alone.coupling.gradient_matrices(alone.coupling.shells(), {}, &all_u)[0];
   EXPECT_LT((gamma - all_gamma).norm(), 1e-12 * all_gamma.norm());
 
   const ControlPoints dx = ControlPoints::Ones(alone.x.rows(), 3) - 0.3 * alone.x, g = alone.coupling.density({alone.f})[0];

@@ -24,7 +24,7 @@ namespace
   quality(StartedScene &scene)
   {
     scene.level().move_points(scene.state);
-    return interface_quality(scene.coupling().jumps(), MPI_COMM_WORLD)[0];
+    return interface_quality(scene.coupling())[0];
   }
 
   CapsuleShapeParameters

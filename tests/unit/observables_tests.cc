@@ -98,8 +98,8 @@ TEST(ParticleStress, IsWhatTheWallsFeel)
   const ShearedCapsule capsule;
   const double         side = 5., z_1 = 1.25, cell = 0.3125;
   SceneDescription     description = small_scene({5., 0.2}, 1., {}, tight(1e-9, 1e-9), side, cell);
-  description.shape                = {capsule.shape.topology, capsule.x};
-  description.stress_free          = capsule.shape.control_points;
+  description.kinds[0].shape       = {capsule.shape.topology, capsule.x};
+  description.kinds[0].stress_free = capsule.shape.control_points;
   description.places               = {Place()};
   StartedScene scene(std::move(description));
   ASSERT_LT(scene.x().col(2).cwiseAbs().maxCoeff(), z_1);

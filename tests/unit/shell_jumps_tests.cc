@@ -212,16 +212,14 @@ TEST(ShellJumps, ShellsThatAreToldToBeFarAndAreNotAreNoticed)
   Spheres                         scene({just_far[0], just_far[0] + Eigen::RowVector3d(2. + 0.3 * finest_cell, 0., 0.)});
   ShellJumps                      jumps(scene.fluid.space(), {}, 2);
   PointInterpolation              points(scene.fluid.space());
-  std::vector<dealii::Point<3>>   X;
   std::vector<ShellTransfer>      transfers;
   const std::vector<ShellBox>     boxes = {shell_box(scene.X(0)), shell_box(scene.X(1))}, wrong = {boxes[0], {{{3., 3., 3.}}, {{4., 4., 4.}}}};
   const std::vector<unsigned int> numbers = {0, 1};
   for (unsigned int c = 0; c < 2; ++c)
     {
       transfers.emplace_back(scene.scene.capsule(), c * scene.coupling_surface.n_points());
-      transfers[c].append_points(*scene.shells[c], X);
     }
-  points.reinit(X);
+  points.reinit(Coupling::points(scene.shells));
   for (unsigned int c = 0; c < 2; ++c)
     transfers[c].move(scene.shells[c], points);
   EXPECT_NO_THROW(jumps.move(transfers, numbers, boxes, points));

@@ -41,20 +41,22 @@ TEST(DistributedShell, SumsTheFacesOfAllRanks)
   scene.x().col(0) += 0.1 * scene.x().col(2);
   const DistributedShell &shell   = scene.elasticity();
   const Shell            &serial  = scene.capsule().shell();
-  const unsigned int      n_faces = shell.faces().size();
+  const unsigned int      n_faces = shell.faces(0).size();
   EXPECT_EQ(dealii::Utilities::MPI::sum(n_faces, MPI_COMM_WORLD), scene.capsule().surface().n_faces());
-  const Shell::Energy e = shell.energy(scene.x()), serial_e = serial.energy(scene.x());
+  const Shell::Energy e = shell.energies({scene.x()})[0], serial_e = serial.energy(scene.x());
   EXPECT_NEAR(e.membrane, serial_e.membrane, 1e-13 * serial_e.membrane);
   EXPECT_NEAR(e.bending, serial_e.bending, 1e-13 * serial_e.bending);
-  ControlPoints f, serial_f;
-  SparseMatrix  K, serial_K;
+  ShellFields               f;
+  std::vector<SparseMatrix> K;
+  ControlPoints             serial_f;
+  SparseMatrix              serial_K;
   for (unsigned int again = 0; again < 2; ++again) // the second time with a matrix that has the pattern
     {
-      shell.force_and_tangent(scene.x(), f, K);
+      shell.forces_and_tangents({scene.x()}, f, K);
       serial.force_and_tangent(scene.x(), serial_f, serial_K);
-      EXPECT_LT((f - serial_f).norm(), 1e-13 * serial_f.norm());
-      EXPECT_LT((shell.force(scene.x()) - serial_f).norm(), 1e-13 * serial_f.norm());
-      EXPECT_LT((K.coeffs() - serial_K.coeffs()).matrix().norm(), 1e-13 * serial_K.norm());
+      EXPECT_LT((f[0] - serial_f).norm(), 1e-13 * serial_f.norm());
+      EXPECT_LT((shell.forces({scene.x()})[0] - serial_f).norm(), 1e-13 * serial_f.norm());
+      EXPECT_LT((K[0].coeffs() - serial_K.coeffs()).matrix().norm(), 1e-13 * serial_K.norm());
     }
 }
 
@@ -63,38 +65,76 @@ TEST(DistributedShell, FailsOnAllRanksAlike)
 {
   StartedScene scene(small_scene({5., 0.2}, 1., {}, tight(1e-8, 1e-8)));
   scene.x()(3, 1) = std::nan(""); // in the faces of some ranks only
-  ControlPoints f;
-  SparseMatrix  K;
-  EXPECT_THROW(scene.elasticity().force(scene.x()), NumericalError);
-  EXPECT_THROW(scene.elasticity().energy(scene.x()), NumericalError);
-  EXPECT_THROW(scene.elasticity().force_and_tangent(scene.x(), f, K), NumericalError);
+  EXPECT_THROW(scene.elasticity().forces({scene.x()}), NumericalError);
+  EXPECT_THROW(scene.elasticity().energies({scene.x()}), NumericalError);
+  EXPECT_THROW(scene.elasticity().tangents({scene.x()}), NumericalError);
 }
 
 
-TEST(ShellLayout, UnknownsOfAllCapsulesComeBackOnAllRanks)
+namespace
 {
-  StartedScene       scene(small_scene({5., 0.2}, 1., {}, tight(1e-8, 1e-8)));
-  const unsigned int n_ranks = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
-  for (const unsigned int n_capsules : {1u, 3u, 5u})
-    {
-      const ShellLayout layout(n_capsules, 7, MPI_COMM_WORLD);
-      FluidBlockVector  vector = layout.vector(scene.fluid().space());
-      EXPECT_EQ(vector.block(shell_block).size(), n_capsules * (1 + 3 * 7));
-      const auto force = [](const unsigned int c) -> ControlPoints { return ControlPoints::Constant(7, 3, 0.5 * c) + ControlPoints::Identity(7, 3); };
-      for (unsigned int c = 0; c < n_capsules; ++c)
-        {
-          EXPECT_EQ(dealii::Utilities::MPI::sum(unsigned(layout.owns(c)), MPI_COMM_WORLD), 1u);
-          EXPECT_LT(layout.owner(c), n_ranks);
-          layout.set(vector, c, 10. + c, force(c));
-        }
-      const std::vector<ShellUnknowns> unknowns = layout.unknowns(vector);
-      ASSERT_EQ(unknowns.size(), n_capsules);
-      for (unsigned int c = 0; c < n_capsules; ++c)
-        {
-          EXPECT_EQ(unknowns[c].pressure_jump, 10. + c);
-          EXPECT_EQ(unknowns[c].density, force(c));
-        }
-    }
+  /** Spheres of 12 and 42 control points, one after the other. */
+  Capsules
+  two_kinds(const unsigned int n_capsules)
+  {
+    const CapsuleQuadrature                     rule{triangle_quadrature(3), triangle_quadrature(3)};
+    std::vector<std::unique_ptr<const Capsule>> kinds;
+    std::vector<unsigned int>                   kind_of;
+    for (const unsigned int level : {0u, 1u})
+      kinds.push_back(std::make_unique<Capsule>(make_capsule({}, level), rule, ShellParameters(), ShellModuli{1., 0.}));
+    for (unsigned int c = 0; c < n_capsules; ++c)
+      kind_of.push_back(c % 2);
+    return {std::move(kinds), kind_of};
+  }
+} // namespace
+
+
+TEST(ShellLayout, UnknownsOfACapsuleComeBackToItsTeam)
+{
+  StartedScene scene(small_scene({5., 0.2}, 1., {}, tight(1e-8, 1e-8)));
+  for (const unsigned int n_capsules : {1u, 2u, 5u})
+    for (const unsigned int n_teams : {0u, 1u})
+      {
+        const Capsules     capsules = two_kinds(n_capsules);
+        ShellLayout        layout(capsules, MPI_COMM_WORLD, n_teams);
+        const unsigned int teams = layout.n_teams();
+        EXPECT_EQ(teams, n_teams == 1 ? 1u : std::min(n_capsules, layout.n_ranks()));
+        for (unsigned int turn = 0; turn < 2; ++turn)
+          {
+            if (turn == 1) // all capsules go to the next team
+              {
+                std::vector<unsigned int> team_of;
+                for (unsigned int c = 0; c < n_capsules; ++c)
+                  team_of.push_back((layout.team_of(c) + 1) % teams);
+                layout.assign(team_of);
+              }
+            EXPECT_EQ(layout.sum(layout.n_own()), n_capsules);
+            FluidBlockVector vector = layout.vector(scene.fluid().space());
+            EXPECT_EQ(vector.block(shell_block).size(), n_capsules + 3 * capsules.n_control_points());
+            const auto force = [&](const unsigned int c) -> ControlPoints {
+              return ControlPoints::Constant(capsules[c].n_control_points(), 3, 0.5 * c) + ControlPoints::Identity(capsules[c].n_control_points(), 3);
+            };
+            for (unsigned int i = 0; i < layout.n_own(); ++i)
+              layout.set(vector, i, 10. + layout.own()[i], force(layout.own()[i]));
+            const std::vector<ShellUnknowns> unknowns = layout.unknowns(vector);
+            ASSERT_EQ(unknowns.size(), layout.n_own());
+            std::vector<double> numbers;
+            for (unsigned int i = 0; i < layout.n_own(); ++i)
+              {
+                const unsigned int c = layout.own()[i];
+                EXPECT_EQ(layout.team_of(c), layout.team_of_rank(layout.rank()));
+                EXPECT_EQ(unknowns[i].pressure_jump, 10. + c);
+                EXPECT_EQ(unknowns[i].density, force(c));
+                numbers.insert(numbers.end(), {double(c), 0.5 * c});
+              }
+            const std::vector<double> all = layout.gathered(numbers, 2);
+            for (unsigned int c = 0; c < n_capsules; ++c)
+              {
+                EXPECT_EQ(all[2 * c], c);
+                EXPECT_EQ(all[2 * c + 1], 0.5 * c);
+              }
+          }
+      }
 }
 
 
@@ -125,9 +165,9 @@ TEST(BlockFactorisation, Solves)
 TEST(ImplicitShells, AreKeptWhileTheyServe)
 {
   StartedScene        scene(without_coarser_control_meshes(small_scene({5., 0.2}, 1., {}, tight(1e-8, 1e-8))));
-  const ShellLayout   layout(1, scene.capsule().n_control_points(), MPI_COMM_WORLD);
+  const ShellLayout  &layout = scene.layout();
   SolverMemory        memory;
-  ImplicitShells      implicit_shells(scene.capsule(), layout, memory);
+  ImplicitShells      implicit_shells(layout, memory);
   const SparseMatrix &Z = scene.capsule().mass();
   const SparseMatrix  K = random_blocks(scene.capsule().surface(), 1e-3);
   EXPECT_FALSE(implicit_shells.serves(0.1));
@@ -139,7 +179,7 @@ TEST(ImplicitShells, AreKeptWhileTheyServe)
 
   // Z_tau (Z_tau + tau K)^{-1} with Z_tau = Z (1 - tau g), on the rank that owns the capsule
   const ControlPoints force = smooth_field(scene.x()), velocity = implicit_shells.velocity(0, force);
-  if (layout.owns(0))
+  if (layout.leads())
     {
       const ControlPoints resistance = Z * velocity * (Eigen::Matrix3d::Identity() - 0.1 * g).transpose();
       EXPECT_LT((resistance + nodal(0.1 * (K * flat(velocity))) - force).norm(), 1e-12 * force.norm());
@@ -172,18 +212,18 @@ TEST(ImplicitShells, AreKeptWhileTheyServe)
 TEST(ImplicitShells, AreFactorsWhereAVCycleDoesNotConverge)
 {
   StartedScene        scene(small_scene({5., 0.2}, 1., {}, tight(1e-8, 1e-8)));
-  const ShellLayout   layout(1, scene.capsule().n_control_points(), MPI_COMM_WORLD);
+  const ShellLayout  &layout = scene.layout();
   SolverMemory        memory;
-  ImplicitShells      implicit_shells(scene.capsule(), layout, memory);
+  ImplicitShells      implicit_shells(layout, memory);
   const SparseMatrix &Z      = scene.capsule().mass();
   const auto          defect = [&](const SparseMatrix &K) { // of S^{-1}
     const ControlPoints force = smooth_field(scene.x()), velocity = implicit_shells.velocity(0, force);
-    return layout.owns(0) ? (Z * velocity + nodal(K * flat(velocity)) - force).norm() / force.norm() : 0.;
+    return layout.leads() ? (Z * velocity + nodal(K * flat(velocity)) - force).norm() / force.norm() : 0.;
   };
   const SparseMatrix weak = random_blocks(scene.capsule().surface(), 1e-5);
   implicit_shells.renew({implicit_operator(Z, weak, Eigen::Matrix3d::Zero(), 1.)}, 1.);
   EXPECT_LT(defect(weak), 0.1);
-  if (layout.owns(0))
+  if (layout.leads())
     {
       EXPECT_GT(defect(weak), 1e-6);
     }
@@ -204,11 +244,13 @@ TEST(ShellMotion, IsAsAccurateAsWanted)
   StartedScene        scene(small_scene({5., 0.2}, 1., {}, tight(1e-8, 1e-8)));
   const ControlPoints f = scene.capsule().mass() * smooth_field(scene.x());
   scene.move_points();
-  VelocityGradients gradients(scene.coupling().transfer(0).n_points(), 9);
+  VelocityGradients gradients(scene.coupling().transfers()[0].n_points(), 9);
   for (Eigen::Index q = 0; q < gradients.rows(); ++q)
     gradients.row(q) << 0.5, 0.3, 1., std::sin(0.1 * q), -0.5, 0.4, 0.2, std::cos(0.1 * q), 0.;
   SparseMatrix gamma;
-  scene.coupling().gradient_matrix(0, gradients, gamma);
+  gamma = scene.capsule().coupling_surface().pattern().block_matrix();
+  scene.coupling().transfers()[0].add_gradient_matrix(gradients, gamma);
+  scene.coupling().guests().sum({{gamma.valuePtr(), std::size_t(gamma.nonZeros())}});
   const auto motion_of = [&](const double tau, const double accuracy) {
     MotionTerms terms;
     terms.gradient = tau * gamma;

@@ -57,9 +57,9 @@ namespace tanktread
     SceneDescription result;
     result.box                      = side;
     result.liquids.flow.amplitude   = simple_shear(shear_rate);
-    result.shape                    = make_capsule(capsule, 2);
+    result.kinds[0].shape           = make_capsule(capsule, 2);
     result.places                   = {Eigen::RowVector3d(0.0137, 0.0271, 0.0314)};
-    result.moduli                   = moduli;
+    result.kinds[0].moduli          = moduli;
     result.fluid_mesh.coarsest_cell = 1.25;
     result.fluid_mesh.finest_cell   = finest_cell;
     result.solver                   = solver;
@@ -71,7 +71,7 @@ namespace tanktread
   inline SceneDescription
   without_coarser_control_meshes(SceneDescription scene)
   {
-    auto &face = scene.shape.topology.faces.front();
+    auto &face = scene.kinds[0].shape.topology.faces.front();
     std::rotate(face.begin(), face.begin() + 1, face.end());
     return scene;
   }

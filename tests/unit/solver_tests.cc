@@ -52,7 +52,7 @@ TEST(PressureJumpResponse, IsAboutTheSchurComplement)
   scene.coupling().spread({v}, load);
   ASSERT_TRUE(solve_fgmres(stokes, scene.fluid().preconditioner(), flow, load, 1e-8, 200).converged);
   const double               exact = v.cwiseProduct(scene.coupling().interpolate(flow)[0]).sum();
-  const PressureJumpResponse response(stokes, scene.fluid().preconditioner(), scene.coupling(), scene.capsule().volume(), basis);
+  const PressureJumpResponse response(stokes, scene.fluid().preconditioner(), scene.coupling(), 1., basis);
   const double               s = response.schur_complements()[0];
   if (is_root())
     std::cout << "s = " << s << ", exact " << exact << ", volume " << scene.capsule().volume() << std::endl;
@@ -79,24 +79,23 @@ TEST(ConstantPressureJump, DrivesNoFlow)
   CapsuleState &state = scene.state.capsules[0];
   state.force         = p0 * scene.level().shells(scene.state)[0]->volume_gradient();
   scene.move_points();
-  const ShellLayout layout(1, state.x.rows(), MPI_COMM_WORLD);
-  SolverMemory      memory;
-  ImplicitShells    implicit_shells(scene.capsule(), layout, memory);
-  Linearisation     at_rest;
+  const ShellLayout &layout = scene.layout();
+  SolverMemory       memory;
+  ImplicitShells     implicit_shells(layout, memory);
+  Linearisation      at_rest;
   at_rest.derivatives = PointDerivatives::frozen;
   const LinearisedShells shells(scene.elasticity(),
                                 scene.coupling(),
                                 scene.state,
                                 scene.level().shells(scene.state),
                                 {ControlPoints::Zero(state.x.rows(), 3)},
-                                {VelocityGradients::Zero(scene.coupling().transfer(0).n_points(), 9)},
                                 at_rest,
                                 implicit_shells);
   FluidBlockVector       rhs = layout.vector(scene.fluid().space()), u(rhs);
   scene.coupling().spread({state.force}, rhs);
   const MonolithicOperator       matrix(scene.fluid().stokes(), shells, layout);
   KrylovBasis                    basis;
-  const PressureJumpResponse     jumps({scene.fluid().stokes()}, scene.fluid().preconditioner(), scene.coupling(), scene.capsule().volume(), basis);
+  const PressureJumpResponse     jumps({scene.fluid().stokes()}, scene.fluid().preconditioner(), scene.coupling(), 1., basis);
   const MonolithicPreconditioner preconditioner(scene.fluid().preconditioner(), shells, layout, jumps);
   const LinearReport             report = solve_fgmres(matrix, preconditioner, u, rhs, 1e-10, 300);
   ASSERT_TRUE(report.converged);

@@ -98,7 +98,7 @@ TEST(TimeStepper, RejectedStepsAreHalvedAndGrowBack)
       const double     halvings = std::log2(before / result.length);
       EXPECT_NEAR(halvings, std::round(halvings), 1e-12);
       EXPECT_GE(halvings, -1e-12);
-      EXPECT_TRUE(result.beyond_mesh.empty());
+      EXPECT_FALSE(result.beyond_mesh);
       EXPECT_EQ(run.memory.next_length, std::min(0.2, 1.5 * result.length));
       EXPECT_EQ(run.memory.previous.front().time, time);
       n_rejected += halvings > 0.5;
@@ -168,9 +168,9 @@ namespace
   SceneDescription
   bending_alone(const BendingForm form)
   {
-    SceneDescription result = small_scene({1., 1.}, 0., ellipsoid(1.4, 1.2, 1.), tight(1e-8, 1e-2));
-    result.shell.law        = MembraneLaw::none;
-    result.shell.form       = form;
+    SceneDescription result    = small_scene({1., 1.}, 0., ellipsoid(1.4, 1.2, 1.), tight(1e-8, 1e-2));
+    result.kinds[0].shell.law  = MembraneLaw::none;
+    result.kinds[0].shell.form = form;
     return result;
   }
 
@@ -221,7 +221,7 @@ TEST(TimeStepper, ShapesNearASphereRelaxAsTheoryHasIt)
   for (const BendingForm form : {BendingForm::variational, BendingForm::moment_only})
     {
       SceneDescription description = bending_alone(form);
-      description.shape            = make_capsule(ellipsoid(1.03, 1., 0.97), 2);
+      description.kinds[0].shape   = make_capsule(ellipsoid(1.03, 1., 0.97), 2);
       description.box              = 7.5;
       description.box.faces.fill(Faces::prescribed);
       description.liquids.unbounded = true;
@@ -313,18 +313,18 @@ TEST(TimeStepper, AStepBeyondTheFinestCellsIsReported)
   run.start();
   const State      before = run.scene.state;
   const StepResult beyond = run.stepper.step(run.scene.state, 0., false);
-  ASSERT_EQ(beyond.beyond_mesh.size(), 1u);
+  ASSERT_TRUE(beyond.beyond_mesh);
   EXPECT_EQ(beyond.length, length);
   EXPECT_EQ(largest_difference(positions(run.scene.state), positions(before)), 0.);
   EXPECT_GT(beyond.newton_iterations, 0u);
 
   // On a mesh around both ends the same step is made...
-  run.stepper.refine_around(run.scene.state, {beyond.beyond_mesh});
+  run.stepper.refine_around(run.scene.state, {*beyond.beyond_mesh});
   const StepResult again = run.stepper.step(run.scene.state, 0., false);
-  EXPECT_TRUE(again.beyond_mesh.empty());
+  EXPECT_FALSE(again.beyond_mesh);
   EXPECT_EQ(again.length, length);
   // ... and ends where the first attempt did, but for the coarser cells there.
-  const double difference = largest_difference(positions(run.scene.state), beyond.beyond_mesh);
+  const double difference = largest_difference(positions(run.scene.state), *beyond.beyond_mesh);
   if (is_root())
     std::cout << "difference of the two attempts " << difference << std::endl;
   EXPECT_LT(difference, 0.05);
@@ -333,7 +333,7 @@ TEST(TimeStepper, AStepBeyondTheFinestCellsIsReported)
   SteppedScene other(description, steps(length));
   other.start();
   const StepResult shorter = other.stepper.step(other.scene.state, 0., true);
-  EXPECT_TRUE(shorter.beyond_mesh.empty());
+  EXPECT_FALSE(shorter.beyond_mesh);
   EXPECT_LT(shorter.length, length);
   EXPECT_TRUE(other.says("rejected: the shells leave the finest cells of the fluid."));
   EXPECT_EQ(other.scene.coupling().jumps().n_coarse_cut_cells(), 0u);

@@ -103,7 +103,7 @@ namespace tanktread
     }
     /** The kind of the rank's own capsule i. */
     const Capsule &
-    capsule(const unsigned int i) const
+    capsule(const unsigned int i = 0) const
     {
       return layout_.capsule(i);
     }
