@@ -32,6 +32,13 @@ namespace tanktread
     space_         = &space;
     interpolation_ = std::make_unique<PointInterpolation>(space);
     jumps_         = std::make_unique<ShellJumps>(space, contrast_, interface_ == Interface::enriched ? layout_.n_capsules() : 0);
+    reassign();
+  }
+
+
+  void
+  Coupling::reassign()
+  {
     guests_.clear();
     shells_.clear();
     transfers_.clear();

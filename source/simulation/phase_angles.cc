@@ -26,6 +26,15 @@ namespace tanktread
   }
 
 
+  PhaseAngles::PhaseAngles(const TriangleMesh &topology, const std::array<double, 4> &numbers)
+    : limit_(vertex_limit_stencils(topology))
+    , marker_(Eigen::Index(numbers[0]))
+    , alpha_(numbers[1])
+    , theta_(numbers[2])
+    , offset_(numbers[3])
+  {}
+
+
   double
   PhaseAngles::marker_angle(const ControlPoints &x, const InertiaEllipsoid &ellipsoid) const
   {

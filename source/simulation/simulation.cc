@@ -10,6 +10,7 @@
 #include <tanktread/base/output_folder.h>
 #include <tanktread/simulation/scene_description.h>
 #include <tanktread/simulation/simulation.h>
+#include <tanktread/solver/team_choice.h>
 
 #include <algorithm>
 #include <cmath>
@@ -115,6 +116,23 @@ namespace tanktread
   }
 
 
+  void
+  Simulation::settle_owners()
+  {
+    const std::vector<unsigned int> team_of = chosen_teams(scene_.coupling());
+    bool                            same    = true;
+    for (unsigned int c = 0; c < team_of.size(); ++c)
+      same = same && team_of[c] == scene_.layout().team_of(c);
+    if (same)
+      return;
+    const CapsuleMoves moves(scene_.layout(), team_of);
+    stepper_.reassign(moves, state_);
+    memory_.capsules = moves.moved(memory_.capsules);
+    scene_.reassign(team_of);
+    scene_.level().move_points(state_);
+  }
+
+
   unsigned int
   Simulation::first_flow()
   {
@@ -165,6 +183,7 @@ namespace tanktread
          << scene_.fluid().space().pressure->partitioner()->size() << " pressure unknowns.";
     log_.line(text.str());
     record(first, observe_capsules(), false);
+    settle_owners();
   }
 
 
@@ -376,7 +395,10 @@ namespace tanktread
         if (known)
           log_.line("Steady: what the shape relaxes to has been known to Time/Limit tolerance in three steps.");
         if (!last && !scene_.covers(state_))
-          memory_.remeshing_iterations = refine_around_shells();
+          {
+            memory_.remeshing_iterations = refine_around_shells();
+            settle_owners();
+          }
       }
     return steady || known ? "steady" : "done";
   }

@@ -81,6 +81,16 @@ namespace tanktread
   }
 
 
+  void
+  TimeStepper::reassign(const CapsuleMoves &moves, State &state)
+  {
+    state.capsules = moves.moved(state.capsules);
+    for (StepMemory::Level &level : memory_.previous)
+      level.state.capsules = moves.moved(level.state.capsules);
+    memory_.history.reassign([&](const ShellFields &x) { return moves.moved(x); });
+  }
+
+
   StepResult
   TimeStepper::step(State &state, const double time, const bool last_mesh)
   {

@@ -83,6 +83,16 @@ namespace tanktread
   }
 
 
+  void
+  Scene::reassign(const std::vector<unsigned int> &team_of)
+  {
+    layout_.assign(team_of);
+    coupling_.reassign();
+    level_.reassign();
+    solver_.reassign();
+  }
+
+
   bool
   Scene::covers(const State &state)
   {

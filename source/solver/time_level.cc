@@ -83,6 +83,15 @@ namespace tanktread
 
 
   void
+  TimeLevel::reassign()
+  {
+    shells_.clear();
+    memory_.viscosity_x.clear();
+    preconditioner_x_.clear();
+  }
+
+
+  void
   TimeLevel::begin(const TimeStep &step)
   {
     flow_ = liquids_.flow.at(step.time);

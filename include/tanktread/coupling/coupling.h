@@ -52,6 +52,10 @@ namespace tanktread
     void
     attach(const TaylorHoodSpace &space);
 
+    /** To be called when ShellLayout::assign() has given capsules to other teams, before move(). */
+    void
+    reassign();
+
     /** Moves the points of all shells. Collective. Throws NumericalError when a point leaves the box, or a shell comes too near to an image of itself. */
     void
     move(const ShellConfigurations &shells);

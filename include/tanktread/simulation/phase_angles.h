@@ -7,6 +7,8 @@
 #include <tanktread/surface/surface_geometry.h>
 #include <tanktread/surface/triangle_mesh.h>
 
+#include <array>
+
 namespace tanktread
 {
   /**
@@ -24,6 +26,16 @@ namespace tanktread
      * is one.
      */
     PhaseAngles(const TriangleMesh &topology, const ControlPoints &x, const InertiaEllipsoid &ellipsoid, double theta_over_pi);
+
+    /** As numbers() has told of the same capsule. */
+    PhaseAngles(const TriangleMesh &topology, const std::array<double, 4> &numbers);
+
+    /** All that it remembers: the marker, alpha, theta and what delta counts from. */
+    std::array<double, 4>
+    numbers() const
+    {
+      return {{double(marker_), alpha_, theta_, offset_}};
+    }
 
     void
     update(const ControlPoints &x, const InertiaEllipsoid &ellipsoid, double theta_over_pi);

@@ -52,6 +52,9 @@ namespace tanktread
     /** New mesh around the present shells, and others if there are any, with the flows carried over. Returns the linear iterations. */
     unsigned int
     refine_around_shells(const std::vector<ShellFields> &others = {});
+    /** Gives capsules to the ranks in whose cells they are, if others have them. */
+    void
+    settle_owners();
     /** Whether the shapes of all capsules have hardly changed in three steps; the same on all ranks. */
     bool
     is_steady(double length);

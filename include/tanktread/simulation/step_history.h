@@ -38,6 +38,15 @@ namespace tanktread
     void
     add(double time, const ShellFields &x);
 
+    /** Replaces the positions of each level by what `moved` makes of them, for capsules that go to other ranks. */
+    template <typename Function>
+    void
+    reassign(const Function &moved)
+    {
+      for (Level &level : levels_)
+        level.x = moved(level.x);
+    }
+
     /** Whether there is but one level. */
     bool
     is_at_start() const

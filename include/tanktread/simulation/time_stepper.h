@@ -5,6 +5,7 @@
 #define tanktread_simulation_time_stepper_h
 
 #include <tanktread/base/log.h>
+#include <tanktread/simulation/capsule_moves.h>
 #include <tanktread/simulation/points_along.h>
 #include <tanktread/simulation/run_memory.h>
 #include <tanktread/solver/scene.h>
@@ -62,6 +63,10 @@ namespace tanktread
      */
     void
     refine_around(State &state, const std::vector<ShellFields> &others = {});
+
+    /** Sends what the levels before have of the capsules to their teams to come, and that of `state`. To be called before Scene::reassign(). */
+    void
+    reassign(const CapsuleMoves &moves, State &state);
 
     /**
      * One step from `time`, not beyond the end time. Throws NumericalError, with `state` as it was, when no length down to a thousandth of Time/Step, or

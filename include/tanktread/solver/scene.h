@@ -64,6 +64,10 @@ namespace tanktread
     void
     refine_around(const State &state, const std::vector<ShellFields> &others = {});
 
+    /** Gives capsules to other teams, see ShellLayout::assign(). States are to be of the new own capsules from then on. */
+    void
+    reassign(const std::vector<unsigned int> &team_of);
+
     /** Whether all cells near the shells are finest ones, within a finest cell with the enriched interface and half of one with the plain one. */
     bool
     covers(const State &state);

@@ -16,7 +16,7 @@ namespace tanktread
   {
     Eigen::Matrix3d     drift = Eigen::Matrix3d::Zero(); // tau G, G a constant part of the velocity gradient
     SparseMatrix        gradient;                        // tau S^T W (grad u - G) S, in the pattern of AssemblyPattern::block_matrix(), or empty
-    double              volume_shift = 0.;               // sigma
+    double              volume_shift   = 0.;             // sigma
     const SparseMatrix *volume_hessian = nullptr;        // H_V, in the same pattern; kept by pointer; not needed with sigma = 0
   };
 

@@ -82,6 +82,10 @@ namespace tanktread
     void
     attach(Fluid &fluid);
 
+    /** To be called when ShellLayout::assign() has given capsules to other teams: forgets where shells were. */
+    void
+    reassign();
+
     /** Makes the undisturbed flow that of step.time, and inertia that of the step; null: of a step of no length, at `time`. Collective. */
     void
     begin(const TimeStep &step);

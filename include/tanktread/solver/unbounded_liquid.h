@@ -4,9 +4,9 @@
 #ifndef tanktread_solver_unbounded_liquid_h
 #define tanktread_solver_unbounded_liquid_h
 
+#include <tanktread/coupling/shell_layout.h>
 #include <tanktread/fluid/prescribed_velocity.h>
 #include <tanktread/shell/shell_configuration.h>
-#include <tanktread/coupling/shell_layout.h>
 #include <tanktread/solver/state.h>
 
 namespace tanktread
