@@ -4,6 +4,7 @@
 #include <tanktread/coupling/shell_pairs.h>
 
 #include <unordered_map>
+#include <unordered_set>
 
 namespace tanktread
 {
@@ -114,6 +115,18 @@ namespace tanktread
               if (other != k)
                 add_points(k, other, group, cut);
         }
+  }
+
+
+  unsigned int
+  ShellPairs::n_cells() const
+  {
+    std::unordered_set<unsigned int> result;
+    for (const SharedPoints &shared : points_)
+      result.insert(shared.cell);
+    for (const SharedCell &shared : cells_)
+      result.insert(shared.cell);
+    return result.size();
   }
 
 

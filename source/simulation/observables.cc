@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: what is measured on a state: each capsule, and all of them together.
 
+#include <deal.II/base/mpi.h>
 #include <deal.II/base/numbers.h>
 
 #include <tanktread/simulation/observables.h>
@@ -82,6 +83,7 @@ namespace tanktread
     result.relative_viscosity  = is_linear ? 1. + together / (2. * E.norm_square()) : not_a_number;
     result.smallest_gap        = scene.gap(state).gap;
     result.distance_from_faces = scene.distance_from_faces(state);
+    result.shared_cells        = dealii::Utilities::MPI::sum(scene.coupling().jumps().pairs().n_cells(), scene.communicator());
     return result;
   }
 
@@ -154,6 +156,7 @@ namespace tanktread
             {"N2", o.stress(2, 2) - o.stress(1, 1)},
             {"smallest_gap", o.smallest_gap},
             {"wall_gap", o.distance_from_faces},
-            {"volume_fraction", o.volume_fraction}};
+            {"volume_fraction", o.volume_fraction},
+            {"shared_cells", double(o.shared_cells)}};
   }
 } // namespace tanktread

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: measures in each step how well a run is resolved, and warns.
 
+#include <deal.II/base/mpi.h>
+
 #include <tanktread/simulation/resolution_monitor.h>
 
 #include <algorithm>
@@ -57,6 +59,7 @@ namespace tanktread
     context_.step            = parameters.time.step;
     context_.steps_are_fixed = parameters.time.tolerance == 0.;
     context_.at_rest         = scene.description().liquids.flow.amplitude.is_zero();
+    context_.two_viscosities = scene.description().liquids.viscosity_ratio != 1.;
   }
 
 
@@ -69,7 +72,7 @@ namespace tanktread
     for (std::size_t c = 0; c < capsules.size(); ++c)
       {
         capsules[c].shape     = mesh_qualities_[scene_.capsules().kind_of(scene_.layout().own()[c])](state.capsules[c].x);
-        capsules[c].self_gap  = smallest_self_gap(*shells[c], context_.finest_cell);
+        capsules[c].self_gap  = smallest_self_gap(*shells[c], scene_.level().finest_cell());
         capsules[c].interface = interfaces[c];
       }
   }
@@ -79,6 +82,7 @@ namespace tanktread
   ResolutionMonitor::check(const State &state, const StepObservables &step, const std::vector<CapsuleObservables> &capsules)
   {
     const Timings::Scope scope(scene_.timings(), "- resolution");
+    context_.finest_cell           = scene_.level().finest_cell(); // which may follow films
     ConcernFigures       figures   = unknown_figures();
     double               left_over = 0., of_shells = 0.;
     for (const CapsuleObservables &o : capsules)
@@ -100,6 +104,8 @@ namespace tanktread
     left_over                 = layout.sum(left_over);
     const double power        = std::abs(step.dissipation) + layout.sum(of_shells);
     of(figures, Concern::gap) = scene_.gap(state).gap;
+    if (dealii::Utilities::MPI::sum(scene_.coupling().jumps().pairs().n_cells(), scene_.communicator()) > 0)
+      of(figures, Concern::shared_cells) = of(figures, Concern::gap) / context_.finest_cell;
     if (!scene_.description().liquids.unbounded) // there the faces are no walls
       of(figures, Concern::wall) = scene_.distance_from_faces(state);
     memory_.energy.add_step(step.step, left_over, power);

@@ -14,7 +14,7 @@ import sys
 
 COLUMNS = ("time D_xz theta L B W volume volume_error area membrane_energy bending_energy dissipation newton_iterations linear_iterations wall_time "
            "alpha delta pressure_jump step cells theta_continuous S_xx S_yy S_zz S_xy S_xz S_yz intrinsic_viscosity N1 N2 x y z u_x u_y u_z").split()
-SUSPENSION_COLUMNS = "time relative_viscosity N1 N2 smallest_gap wall_gap volume_fraction".split()
+SUSPENSION_COLUMNS = "time relative_viscosity N1 N2 smallest_gap wall_gap volume_fraction shared_cells".split()
 REFERENCES = {"crossing_pair": "crossing_pair_Ca0.45", "planar_extension": "planar_extension_Ca0.1", "uniaxial_extension": "uniaxial_extension_Ca0.1",
               "parabola": "plane_poiseuille_Ca1_H5_z1.5", "wall": "wall_Ca0.3_d2"}
 

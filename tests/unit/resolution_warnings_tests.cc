@@ -25,7 +25,8 @@ namespace
                                                              Concern::energy,
                                                              Concern::steps,
                                                              Concern::rise,
-                                                             Concern::self_gap}};
+                                                             Concern::self_gap,
+                                                             Concern::shared_cells}};
 
   ConcernFigures
   only(const Concern concern, const double value)
@@ -39,7 +40,8 @@ namespace
   bool
   low_is_bad(const Concern concern)
   {
-    return concern == Concern::triangle || concern == Concern::curvature || concern == Concern::gap || concern == Concern::wall || concern == Concern::self_gap;
+    return concern == Concern::triangle || concern == Concern::curvature || concern == Concern::gap || concern == Concern::wall ||
+      concern == Concern::self_gap || concern == Concern::shared_cells;
   }
 
   /** A value that is so many times as bad as the threshold. */

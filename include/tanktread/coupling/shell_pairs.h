@@ -40,12 +40,9 @@ namespace tanktread
                  std::vector<VertexArray>       &duals,
                  std::vector<double>            &values) const;
 
-    /** Cells of this rank, counted for each pair, in which two shells meet. */
+    /** Cells of this rank in which two shells or more meet, each counted once. */
     unsigned int
-    n_cells() const
-    {
-      return points_.size() + cells_.size();
-    }
+    n_cells() const;
 
   private:
     /** Points of the colour `other` in a cell that a shell of the colour `own` cuts, and psi_v of the latter there. */

@@ -60,6 +60,7 @@ namespace tanktread
     double          smallest_gap        = 0.;                      // see ShellGap; infinite for one capsule far from its images
     double          distance_from_faces = 0.;                      // that are not periodic; infinite without
     double          volume_fraction     = 0.;
+    unsigned int    shared_cells        = 0; // of the fluid, in which two shells or more meet; zero with the plain interface, which does not look for them
   };
 
   /** Shape, energies and stress of each of the rank's own capsules. @param velocities of their control points. Collective. */

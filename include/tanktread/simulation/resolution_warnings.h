@@ -25,10 +25,11 @@ namespace tanktread
     energy,        // what the steps have left over in the balance; see EnergyMemory
     steps,         // what their local errors add up to, in a; see StepErrorMemory
     rise,          // of the energy in a step, in a liquid at rest; see RestEnergy
-    self_gap       // between two sheets of one capsule, in a; see smallest_self_gap()
+    self_gap,      // between two sheets of one capsule, in a; see smallest_self_gap()
+    shared_cells   // gap between capsules over the finest cell, where two of them are in the same cells
   };
 
-  constexpr unsigned int n_concerns = 11;
+  constexpr unsigned int n_concerns = 12;
 
   /** One number for each Concern: of a step the worst of all capsules, not a number where it is not known. */
   using ConcernFigures = std::array<double, n_concerns>;
@@ -46,6 +47,7 @@ namespace tanktread
     double       step             = 0.;    // Time/Step
     bool         steps_are_fixed  = true;  // Time/Tolerance = 0
     bool         at_rest          = false; // the undisturbed liquid
+    bool         two_viscosities  = false; // another one inside
   };
 
   /** The worst value of a figure in a run so far, and since when it has been beyond its threshold. */
