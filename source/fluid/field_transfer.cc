@@ -29,6 +29,7 @@ namespace tanktread
 
 
   FieldTransfer::FieldTransfer(const TaylorHoodSpace &space, const std::vector<FluidBlockVector *> &fields)
+    : finest_(space.mesh.finest_level())
   {
     for (unsigned int block = 0; block < 2; ++block)
       {
@@ -57,7 +58,7 @@ namespace tanktread
   FieldTransfer::Place
   FieldTransfer::locate(const FluidMesh &mesh, const dealii::Point<3> &point) const
   {
-    const unsigned int finest = mesh.finest_level();
+    const unsigned int finest = finest_; // the new mesh may have a finest level of its own
     dealii::Point<3>   inside = point;
     for (unsigned int d = 0; d < 3; ++d)
       if (!mesh.box().is_periodic(d)) // pressures have nodes on these faces, which rounding may put outside

@@ -7,6 +7,7 @@
 
 #include <tanktread/base/exceptions.h>
 #include <tanktread/base/mpi_errors.h>
+#include <tanktread/fluid/film_cells.h>
 #include <tanktread/fluid/fluid_mesh.h>
 
 #include <algorithm>
@@ -81,7 +82,11 @@ namespace tanktread
     const BoxDivision division = divide(box, parameters.coarsest_cell);
     n_rung_0_                  = division.n_rung_0;
     coarsest_level_            = division.coarsest_level;
-    finest_level_              = std::max<double>(coarsest_level_, std::ceil(std::log2(cell_size(0) / parameters.finest_cell) - 1e-9));
+    regular_level_             = std::max<double>(coarsest_level_, std::ceil(std::log2(cell_size(0) / parameters.finest_cell) - 1e-9));
+    film_level_                = regular_level_;
+    while (parameters.finest_in_gaps > 0. && cell_size(film_level_ + 1) > (1. - 1e-9) * parameters.finest_in_gaps)
+      ++film_level_;
+    finest_level_ = regular_level_;
     restart();
   }
 
@@ -108,6 +113,20 @@ namespace tanktread
   FluidMesh::cell_size(const unsigned int level) const
   {
     return box_.side[0] / n_rung_0_[0] / (1 << level);
+  }
+
+
+  void
+  FluidMesh::choose_finest_level(const double gap)
+  {
+    finest_level_ = regular_level_ + film_halvings(gap, cell_size(regular_level_), film_level_ - regular_level_, finest_level_ - regular_level_);
+  }
+
+
+  bool
+  FluidMesh::suits(const double gap) const
+  {
+    return film_halvings(gap, cell_size(regular_level_), film_level_ - regular_level_, finest_level_ - regular_level_) == finest_level_ - regular_level_;
   }
 
 

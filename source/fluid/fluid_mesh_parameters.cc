@@ -41,6 +41,11 @@ namespace tanktread
                        pressure_space,
                        {{"Q1", PressureSpace::q1}},
                        "Q1: continuous trilinear functions and the indicator of the capsule's interior.");
+    prm.add_parameter("Finest cell in gaps",
+                      finest_in_gaps,
+                      "How small the cells at all shells may become, in a, while a film between two shells or a shell and a wall is thinner than two of them: "
+                      "halved until two fit, never below this side; 0: Finest cell, whatever the films.",
+                      Double(0., 10.));
     prm.leave_subsection();
   }
 
@@ -168,6 +173,10 @@ namespace tanktread
       message << "Fluid mesh/Finest cell is " << finest_cell << "; allowed: at most Fluid mesh/Coarsest cell, " << coarsest_cell << '.';
     else if (longest / finest_cell > 1 << 18)
       message << "Fluid mesh/Finest cell is " << finest_cell << "; allowed: at least " << longest / (1 << 18) << " in this box.";
+    else if (finest_in_gaps > finest_cell)
+      message << "Fluid mesh/Finest cell in gaps is " << finest_in_gaps << "; allowed: at most Fluid mesh/Finest cell, " << finest_cell << ", or 0.";
+    else if (finest_in_gaps > 0. && longest / finest_in_gaps > 1 << 18)
+      message << "Fluid mesh/Finest cell in gaps is " << finest_in_gaps << "; allowed: at least " << longest / (1 << 18) << " in this box, or 0.";
     if (!message.str().empty())
       throw InputError(message.str());
     divide(box, coarsest_cell);

@@ -172,7 +172,11 @@ namespace tanktread
     for (const auto &[cause, n] : run.coarser)
       {
         if (cause == Cause::mesh || cause == Cause::cells)
-          result.push_back("Fluid mesh/Finest cell=" + number(parameters.fluid_mesh.finest_cell * power(2., n)));
+          {
+            result.push_back("Fluid mesh/Finest cell=" + number(parameters.fluid_mesh.finest_cell * power(2., n)));
+            if (parameters.fluid_mesh.finest_in_gaps > 0.)
+              result.push_back("Fluid mesh/Finest cell in gaps=" + number(parameters.fluid_mesh.finest_in_gaps * power(2., n)));
+          }
         if (cause == Cause::mesh || cause == Cause::control_mesh)
           result.push_back("Shell mesh/Level=" + std::to_string(parameters.shell_mesh.level - n));
         if (cause == Cause::step)

@@ -73,7 +73,14 @@ namespace tanktread
     for (State *const level : levels)
       level->sides.clear();
     const FieldTransfer transfer(scene_.fluid().space(), flows);
+    const double        finest_cell = scene_.level().finest_cell();
     scene_.refine_around(state, others);
+    if (const double h = scene_.level().finest_cell(); std::abs(h / finest_cell - 1.) > 1e-9)
+      {
+        std::ostringstream text;
+        text << "Finest cells of the fluid are " << h << " a from now on (Finest cell in gaps): the smallest gap is " << scene_.gap(state).gap << " a.";
+        log_.line(text.str());
+      }
     transfer.interpolate(scene_.fluid().space(), flows);
     scene_.level().move_points(state);
     for (StepMemory::Level &level : memory_.previous)

@@ -5,6 +5,7 @@
 #include <tanktread/coupling/shell_neighbours.h>
 #include <tanktread/solver/scene.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -27,7 +28,7 @@ namespace tanktread
     Capsules
     make_capsules(const SceneDescription &scene, const FluidMesh &mesh)
     {
-      const double                                finest_cell = mesh.cell_size(mesh.finest_level());
+      const double                                finest_cell = mesh.cell_size(mesh.film_level()); // that there may be
       std::vector<std::unique_ptr<const Capsule>> kinds;
       for (const CapsuleKind &kind : scene.kinds)
         kinds.push_back(std::make_unique<Capsule>(kind.shape, quadrature(scene, kind, finest_cell), kind.shell, kind.moduli, kind.stress_free));
@@ -68,17 +69,22 @@ namespace tanktread
   {
     const Timings::Scope          scope(timings_, "Fluid mesh and multigrid");
     std::vector<dealii::Point<3>> points;
+    double                        film = thinnest_film(level_.shells(state));
     on_all_ranks(communicator_, [&] {
       if (layout_.leads())
         points = Coupling::points(level_.shells(state));
-      for (const ShellFields &x : others)
-        for (unsigned int i = 0; layout_.leads() && i < x.size(); ++i)
-          {
-            const std::vector<dealii::Point<3>> further = Coupling::points({std::make_shared<ShellConfiguration>(capsule(i), x[i])});
-            points.insert(points.end(), further.begin(), further.end());
-          }
     });
-    fluid_.adapt(points);
+    for (const ShellFields &x : others)
+      {
+        ShellConfigurations shells;
+        for (unsigned int i = 0; i < x.size(); ++i)
+          shells.push_back(std::make_shared<ShellConfiguration>(capsule(i), x[i]));
+        const std::vector<dealii::Point<3>> further = Coupling::points(shells);
+        film                                        = std::min(film, thinnest_film(shells));
+        if (layout_.leads())
+          points.insert(points.end(), further.begin(), further.end());
+      }
+    fluid_.adapt(points, film);
     level_.attach(fluid_);
   }
 
@@ -97,7 +103,7 @@ namespace tanktread
   Scene::covers(const State &state)
   {
     const std::vector<dealii::Point<3>> points = layout_.leads() ? Coupling::points(level_.shells(state)) : std::vector<dealii::Point<3>>();
-    return fluid_.mesh().covers(points, coupling_.knows_motion() ? 0.5 : 1.);
+    return fluid_.mesh().suits(thinnest_film(level_.shells(state))) && fluid_.mesh().covers(points, coupling_.knows_motion() ? 0.5 : 1.);
   }
 
 
@@ -121,10 +127,30 @@ namespace tanktread
   double
   Scene::distance_from_faces(const State &state)
   {
+    return distance_from_faces(level_.shells(state));
+  }
+
+
+  double
+  Scene::distance_from_faces(const ShellConfigurations &shells) const
+  {
     std::array<double, 3> half_sides;
     for (unsigned int d = 0; d < 3; ++d)
       half_sides[d] = description_.box.is_periodic(d) ? std::numeric_limits<double>::infinity() : 0.5 * description_.box.side[d];
-    return -layout_.max(-smallest_distance_from_faces(level_.shells(state), half_sides));
+    return -layout_.max(-smallest_distance_from_faces(shells, half_sides));
+  }
+
+
+  double
+  Scene::thinnest_film(const ShellConfigurations &shells) const
+  {
+    const FluidMesh &mesh = fluid_.mesh();
+    if (!mesh.follows_films())
+      return std::numeric_limits<double>::infinity();
+    double result = smallest_gap(layout_, shells, periods(), 4. * description_.fluid_mesh.finest_cell).gap;
+    if (!description_.liquids.unbounded) // there the faces are no walls
+      result = std::min(result, distance_from_faces(shells));
+    return result; // the same on all ranks
   }
 
 

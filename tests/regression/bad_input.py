@@ -151,6 +151,12 @@ CASES = {
     ),
     "missing_file": ("", ["no.prm"], 1, ['cannot read the parameter file "no.prm"']),
     "no_file": ("", [], 1, ["no parameter file given", "usage"]),
+    "larger_cells_in_gaps": (
+        section("Fluid mesh", "set Finest cell = 0.2", "set Finest cell in gaps = 0.3"),
+        ["case.prm"],
+        1,
+        ["Fluid mesh/Finest cell in gaps is 0.3; allowed: at most Fluid mesh/Finest cell, 0.2, or 0"],
+    ),
     "failing_computation": (
         section("Shell mesh", "set Level = 1")
         + section("Fluid mesh", "set Finest cell = 0.625")

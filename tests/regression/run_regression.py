@@ -4,6 +4,8 @@
 """Columns of history.csv are compared by numdiff: a number passes when its relative or its absolute error is within the tolerance. The stored file holds the
 compared columns only; counts of iterations and times differ between machines and library versions and are never compared.
 
+A reference may come from a finer mesh: then the tolerance is the error of the run, measured before.
+
 A reference is written, or renewed after a change that is meant, with --update.
 """
 
@@ -31,6 +33,7 @@ def arguments():
     parser.add_argument("--relative", default="1e-6")
     parser.add_argument("--absolute", default="1e-10")
     parser.add_argument("--columns", default=COLUMNS, help="names separated by commas")
+    parser.add_argument("--history", default="history.csv", help="file of the run's folder; of one capsule of several: history_1.csv")
     parser.add_argument("--set", action="append", default=[], metavar="SECTION/PARAMETER=VALUE")
     parser.add_argument("--update", action="store_true", help="store the columns of this run as the reference")
     return parser.parse_args()
@@ -73,7 +76,7 @@ def main():
     run(args)
     folder = pathlib.Path(args.output)
     compared = folder / "compared.csv"
-    select_columns(folder / "history.csv", names, compared)
+    select_columns(folder / args.history, names, compared)
     if args.update:
         pathlib.Path(args.reference).write_text(compared.read_text())
         return 0

@@ -50,6 +50,7 @@ namespace tanktread
       unsigned int rank, number;
     };
 
+    unsigned int                               finest_;    // level of the old mesh
     std::unordered_map<std::uint64_t, Cell>    cells_;     // by packed key, of all ranks
     std::vector<unsigned int>                  nodes_[2];  // of velocities and pressures: those of each cell of this rank
     std::vector<dealii::AlignedVector<double>> values_[2]; // full array of each field

@@ -8,6 +8,7 @@
 #include <tanktread/fluid/stokes_method.h>
 #include <tanktread/fluid/stokes_preconditioner.h>
 
+#include <limits>
 #include <memory>
 #include <stdexcept>
 
@@ -26,10 +27,15 @@ namespace tanktread
       , pressure_multigrid_(linear_elements())
     {}
 
-    /** Refines around `points`; see FluidMesh::aim_at(). Returns true if the mesh changed: all vectors of before are void then. Collective. */
+    /**
+     * Refines around `points`; see FluidMesh::aim_at(). Returns true if the mesh changed: all vectors of before are void then. Collective.
+     *
+     * @param film width of the thinnest one; see FluidMesh::choose_finest_level().
+     */
     bool
-    adapt(const std::vector<dealii::Point<3>> &points)
+    adapt(const std::vector<dealii::Point<3>> &points, const double film = std::numeric_limits<double>::infinity())
     {
+      mesh_.choose_finest_level(film);
       if (!mesh_.aim_at(points))
         return false;
       // What stands on the mesh must go before the mesh changes.

@@ -36,7 +36,8 @@ namespace tanktread
   /**
    * Cubes that fill a box. Boundary ids are as deal.II colours them: 2d and 2d + 1 for the lower and the upper face of axis d.
    *
-   * The coarsest cells are those that divide() makes of the box; the finest level is the first whose cells are not larger than asked for. For the multigrid's
+   * The coarsest cells are those that divide() makes of the box; the finest level is the first whose cells are not larger than asked for, or a finer one if
+   * films ask for it (choose_finest_level()). For the multigrid's
    * sake the mesh is grown from few cells, n_rung_0(), in rungs: rung l has the cells of the finished mesh down to level l, 2:1 balanced. All calls are
    * collective.
    */
@@ -47,6 +48,31 @@ namespace tanktread
 
     /** Throws InputError if no cubes near the coarsest size asked for fill the box, or nothing holds the liquid; see divide(). */
     FluidMesh(MPI_Comm communicator, const Box &box, const FluidMeshParameters &parameters);
+
+    /**
+     * Makes the finest level that of films of width `gap` in a, see film_halvings(); only with `finest_in_gaps`. Not collective; `gap` has to be the same on all
+     * ranks. A level that is not the one of before holds from the next aim_at() on, which is to follow at once: until restart() the mesh has other cells.
+     */
+    void
+    choose_finest_level(double gap);
+
+    /** Whether choose_finest_level() would leave the finest level as it is. */
+    bool
+    suits(double gap) const;
+
+    /** Whether the finest level follows films at all. */
+    bool
+    follows_films() const
+    {
+      return film_level_ > regular_level_;
+    }
+
+    /** The level of the smallest cells that films may ask for: finest_level() if none may. */
+    unsigned int
+    film_level() const
+    {
+      return film_level_;
+    }
 
     /**
      * Chooses the mesh to climb to: the coarsest one, 2:1 balanced, in which every cell closer than band_width h (in each coordinate) to one of `points` has
@@ -191,6 +217,7 @@ namespace tanktread
     int                grading_;
     std::array<int, 3> n_rung_0_;
     unsigned int       coarsest_level_, finest_level_, rung_ = 0;
+    unsigned int       regular_level_, film_level_; // the least and the largest finest level
     bool               aimed_ = false; // has a mesh been chosen?
     KeySet             wanted_;        // by the points of this rank, of the mesh chosen last
     Triangulation      triangulation_;

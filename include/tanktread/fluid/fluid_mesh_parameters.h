@@ -31,6 +31,8 @@ namespace tanktread
 
     PressureSpace pressure_space = PressureSpace::q1;
 
+    double finest_in_gaps = 0.; // how small finest cells may become for films; 0, or finest_cell and more: they stay as they are
+
     /** Declares section "Fluid mesh" in `prm`; parsing fills this object, which has to outlive `prm`. */
     void
     add_parameters(dealii::ParameterHandler &prm);

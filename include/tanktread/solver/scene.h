@@ -68,7 +68,10 @@ namespace tanktread
     void
     reassign(const std::vector<unsigned int> &team_of);
 
-    /** Whether all cells near the shells are finest ones, within a finest cell with the enriched interface and half of one with the plain one. */
+    /**
+     * Whether the mesh will do for these shells: all cells near them are finest ones, within a finest cell with the enriched interface and half of one with the plain
+     * one, and finest cells are as small as `Finest cell in gaps` asks for between them, and no smaller.
+     */
     bool
     covers(const State &state);
 
@@ -150,6 +153,14 @@ namespace tanktread
   private:
     std::array<double, 3>
     periods() const;
+
+    /** Width of the thinnest film between two shells, or a shell and a wall, the same on all ranks; infinite where nothing depends on it. */
+    double
+    thinnest_film(const ShellConfigurations &shells) const;
+
+    /** See distance_from_faces(). */
+    double
+    distance_from_faces(const ShellConfigurations &shells) const;
 
     const SceneDescription description_;
     const MPI_Comm         communicator_;
