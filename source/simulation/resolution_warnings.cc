@@ -150,8 +150,8 @@ namespace tanktread
     shared_cells_text(const double gap, const ResolutionContext &context)
     {
       return "two shells are in the same cells of the fluid (" + cells(context) + "), " + number(gap) + " of a cell apart, less than " +
-        number(warning_threshold(Concern::shared_cells, context)) + ": velocities of the film between them are wrong by " +
-        (context.two_viscosities ? "5 % or more with another viscosity inside" : "3 % or more") + ". " + finer_cells(gap * context.finest_cell) +
+        number(warning_threshold(Concern::shared_cells, context)) + ": velocities of the film between them may be wrong by " +
+        (context.two_viscosities ? "5 % with another viscosity inside" : "3 %") + ". " + finer_cells(gap * context.finest_cell) +
         ", or give that as Fluid mesh/Finest cell in gaps.";
     }
 
