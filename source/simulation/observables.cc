@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/numbers.h>
 
+#include <tanktread/fluid/velocity_products.h>
 #include <tanktread/simulation/observables.h>
 
 namespace tanktread
@@ -73,12 +74,19 @@ namespace tanktread
     result.volume_fraction = scene.layout().sum(result.volume_fraction);
     for (unsigned int i = 0; i < 9; ++i)
       result.stress.data()[i] = scene.layout().sum(result.stress.data()[i]);
+    if (const double density = scene.level().liquids().reynolds_number; density > 0.)
+      {
+        const dealii::SymmetricTensor<2, 3> products = integral_of_products(scene.fluid().space(), state.fluid.block(velocity_block));
+        for (unsigned int c = 0; c < 3; ++c)
+          for (unsigned int d = 0; d < 3; ++d)
+            result.momentum_flux(c, d) = -density / volume * products[c][d];
+      }
     const UndisturbedFlow     &flow     = scene.level().flow();
     const dealii::Tensor<2, 3> E        = 0.5 * (flow.linear + transpose(flow.linear));
     double                     together = 0.;
     for (unsigned int c = 0; c < 3; ++c)
       for (unsigned int d = 0; d < 3; ++d)
-        together += result.stress(c, d) * E[c][d];
+        together += (result.stress(c, d) + result.momentum_flux(c, d)) * E[c][d];
     const bool is_linear       = flow.quadratic.norm_square() == 0. && E.norm_square() > 0.;
     result.relative_viscosity  = is_linear ? 1. + together / (2. * E.norm_square()) : not_a_number;
     result.smallest_gap        = scene.gap(state).gap;
@@ -157,6 +165,7 @@ namespace tanktread
             {"smallest_gap", o.smallest_gap},
             {"wall_gap", o.distance_from_faces},
             {"volume_fraction", o.volume_fraction},
-            {"shared_cells", double(o.shared_cells)}};
+            {"shared_cells", double(o.shared_cells)},
+            {"momentum_flux_xz", o.momentum_flux(0, 2)}};
   }
 } // namespace tanktread

@@ -4,6 +4,7 @@
 """Takes the program's command line, FILE.prm --set Section/Parameter=value ..., and leaves a folder like one of its own.
 
 The scenes of benchmarks/flows get their reference solution, read off at other times, in the frame of the box, with D larger by the factor 1 + (4/side)^3;
+those of benchmarks/suspensions capsules that turn back, or a relative viscosity of 1 + 2.5 times the volume fraction from time 3 on;
 those of benchmarks/work_precision a capsule whose D and intrinsic viscosity are too large by a tenth of the square of the finest cell; the rest a capsule whose D goes to 0.3, wrong by a third of the target error; that of benchmarks/scaling what its counting library leaves too; with a study there is a companion of four times the target and its table.
 """
 
@@ -74,6 +75,24 @@ def circles(rows):
             yield {"time": row["time"], "x": row.get("x", 0) + math.cos(k * math.pi / 12), "z": row.get("z", 0) + math.sin(k * math.pi / 12)}
 
 
+def several(folder, prm, settings):
+    """Capsules of benchmarks/suspensions: each comes from its side and turns back at x = 1; the mean flow carries a hundredth of the stress with inertia."""
+    number = int(settings.get("Capsule/Number", 2))
+    end = float(settings.get("Scene/End time", end_of(prm)))
+    rows = list(simple(0))
+    for i, row in enumerate(rows):
+        row["time"] = t = end * i / (len(rows) - 1)
+        row.update(x=-math.hypot(1, t - 10), z=0.2 if i == 0 else 0.1 * (10 - t) / 10, u_x=0, u_z=0)
+    for c in range(number):
+        turned = [{**row, "x": -row["x"], "z": -row["z"]} if c % 2 else row for row in rows]
+        write(folder / f"history_{c + 1}.csv", COLUMNS, turned)
+    fraction = 4 * math.pi / 3 * number / float(settings["Scene/Box side"])**3 if "Capsule/Number" in settings else 0
+    table = [{"time": row["time"], "relative_viscosity": 1 + 2.5 * round(fraction, 4) if row["time"] >= 3 else 9, "smallest_gap": 0.1, "wall_gap": 1, "volume_fraction": fraction,
+              "momentum_flux_xz": 0.01} for row in rows]
+    write(folder / "suspension.csv", [*SUSPENSION_COLUMNS, "momentum_flux_xz"], table)
+    return rows
+
+
 def study(folder, target):
     """The companion of a simple capsule, and what it says of the curves, and of the least value of D, which it has no error in."""
     companion = folder / "study/target-1"
@@ -114,11 +133,15 @@ def main():
         end = end_of(prm)
         frame = float(settings.get("Scene/Frame velocity", "0").split(",")[0])
         rows = from_reference(file, float(settings["Scene/Box side"].split(",")[-1]), frame, end)
+    elif prm.parent.name == "suspensions":
+        rows = several(folder, prm, settings)
     elif prm.stem in REFINED and "Fluid mesh/Finest cell" in settings:
         rows = list(refined(float(settings["Fluid mesh/Finest cell"]), float(settings["Time/Step"]), end_of(prm)))
     else:
         rows = list(simple(float(settings.get("Accuracy/Target error", 0))))
-    if prm.stem == "crossing_pair":
+    if prm.parent.name == "suspensions":
+        pass  # written
+    elif prm.stem == "crossing_pair":
         second = [{**row, **{name: -row.get(name, 0) for name in ("x", "y", "z", "u_x", "u_y", "u_z")}} for row in rows]
         for i, capsule in enumerate((rows, second)):
             write(folder / f"history_{i + 1}.csv", COLUMNS, capsule)

@@ -21,7 +21,7 @@ import python_packages  # noqa: E402
 
 python_packages.need("numpy", "matplotlib")
 
-SCRIPTS = ["plot_run.py", "plot_study.py", "interface_study.py", "box_study.py", "economy.py", "le_2010/run.py", "flows/run.py", "work_precision/run.py", "stability/run.py", "scaling/run.py"]
+SCRIPTS = ["plot_run.py", "plot_study.py", "interface_study.py", "box_study.py", "economy.py", "le_2010/run.py", "flows/run.py", "suspensions/run.py", "work_precision/run.py", "stability/run.py", "scaling/run.py"]
 
 
 class Repository(unittest.TestCase):

@@ -8,6 +8,7 @@
 #include <tanktread/fluid/inertia.h>
 #include <tanktread/fluid/point_interpolation.h>
 #include <tanktread/fluid/undisturbed_flow.h>
+#include <tanktread/fluid/velocity_products.h>
 
 #include <cmath>
 
@@ -61,6 +62,22 @@ TEST(Inertia, DerivativeIsThatOfTheResidual)
   difference.add(-1., back); // exact for the quadratic terms
   difference.add(-1., derivative);
   EXPECT_LT(norm(difference), 1e-13 * norm(derivative));
+}
+
+
+TEST(Inertia, ProductsOfVelocitiesAreIntegratedExactly)
+{
+  // u = (1 - (z/2)^2) c vanishes at the walls z = -2, 2 and is among the functions of the cells, of which there are two sizes: c_i c_j times the integral
+  // of (1 - (z/2)^2)^2.
+  FluidMesh mesh(MPI_COMM_WORLD, 4., mesh_parameters(1., 0.5));
+  mesh.adapt({Point(0.1, 0.2, 0.3), Point(1.9, -1.9, -1.6)});
+  const TaylorHoodSpace      space(mesh);
+  const dealii::Tensor<1, 3> c({0.7, -1.1, 0.4});
+  const FluidBlockVector     u        = nodal_velocity(space, [&](const Point &x) { return (1. - x[2] * x[2] / 4.) * c; });
+  const auto                 products = integral_of_products(space, u.block(velocity_block));
+  for (unsigned int i = 0; i < 3; ++i)
+    for (unsigned int j = 0; j < 3; ++j)
+      EXPECT_NEAR(products[i][j], 16. * 32. / 15. * c[i] * c[j], 1e-12) << i << j;
 }
 
 

@@ -56,7 +56,8 @@ namespace tanktread
   struct SuspensionObservables
   {
     Eigen::Matrix3d stress              = Eigen::Matrix3d::Zero(); // sum of the particle stresses over the volume of the box
-    double          relative_viscosity  = 0.;                      // 1 + stress : E / (2 E : E), E the strain rate of a linear flow; not a number otherwise
+    Eigen::Matrix3d momentum_flux       = Eigen::Matrix3d::Zero(); // -Re times the mean of u_i u_j over the box, of the disturbance u; zero without inertia
+    double          relative_viscosity  = 0.;                      // 1 + (both) : E / (2 E : E), E the strain rate of a linear flow; not a number otherwise
     double          smallest_gap        = 0.;                      // see ShellGap; infinite for one capsule far from its images
     double          distance_from_faces = 0.;                      // that are not periodic; infinite without
     double          volume_fraction     = 0.;

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Part of Tanktread: figures of the scenes with several capsules.
+"""draw(group, results, folder) makes <folder>/<group>.png."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import averages
+import results as published
+
+COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#666666")
+RE = {"inertia_3": 3, "inertia_10": 10, "inertia_50": 50, "inertia_10_radius": 10, "inertia_10_young": 10}
+
+
+def draw_inertia(results, axes):
+    colors = {3: COLORS[0], 10: COLORS[1], 50: COLORS[2]}
+    for axis, others in zip(axes, (False, True)):
+        for result in results:
+            is_other = result.name.count("_") > 1
+            if is_other and not others or not is_other and others and RE[result.name] != 10:
+                continue
+            style = {"inertia_10_radius": ":", "inertia_10_young": "-."}.get(result.name, "-" if result.resolution == "quick" else (0, (6, 1)))
+            axis.plot(result.capsules[0]["time"], result.capsules[0]["z"] / 2, color=COLORS[3 + others] if is_other else colors[RE[result.name]], linestyle=style, label=result.label)
+        for reynolds, (times, heights) in published.PUBLISHED_INERTIA.items():
+            if not others or reynolds == 10:
+                axis.plot(times, heights, "D", color=colors[reynolds], markersize=5)
+        axis.axhline(0, color="#666666", linewidth=0.6)
+        axis.set(xlabel=r"$\dot\gamma t$", ylabel="height $/D$")
+        axis.legend(fontsize=8)
+    axes[1].set_title("Re = 10 read otherwise", fontsize=10)
+
+
+def draw_crossing(results, axes):
+    for color, result in zip(COLORS, results):
+        axes[0].plot(*result.offset(), color=color, label=result.label)
+        axes[1].plot(result.capsules[0]["time"], result.capsules[0]["D"], color=color)
+    axes[0].plot(*zip((-4, 0.252), (0.43, 0.720), (5.7, 0.546)), "D", color="#222222", markersize=5, label="published, λ = 1")
+    axes[0].set(xlabel=r"$\Delta x/2a$", ylabel=r"$\Delta z/2a$")
+    axes[1].set(xlabel=r"$\dot\gamma t$", ylabel="$D$")
+    axes[0].legend(fontsize=8)
+
+
+def fraction_of(result):
+    return float(result.suspension["volume_fraction"][0])
+
+
+def draw_suspension(results, axes):
+    shades = plt.get_cmap("viridis")
+    for result in results:
+        time, viscosity = result.suspension["time"], result.suspension["relative_viscosity"]
+        style = ":" if float(result.setting("Scene/Reynolds number", "0")) else "-"
+        axes[0].plot(time, viscosity, linestyle=style, color=shades(fraction_of(result) / 0.35), linewidth=1.2)
+    axes[0].axvline(averages.START, color="#666666", linewidth=0.6)
+    axes[0].set(xlabel=r"$\dot\gamma t$", ylabel="relative viscosity")
+    kinds = {"8, Stokes": (COLORS[0], "o"), "27, Stokes": (COLORS[1], "s"), "64, Stokes": (COLORS[2], "^"), "8, Re = 10": (COLORS[3], "v")}
+    seen = set()
+    for result in results:
+        kind = f"{len(result.capsules)}, " + ("Re = 10" if float(result.setting("Scene/Reynolds number", "0")) else "Stokes")
+        viscosity = result.averages["relative_viscosity"]
+        color, marker = kinds[kind]
+        axes[1].errorbar(100 * fraction_of(result), viscosity.mean, viscosity.error, color=color, marker=marker, linestyle="", capsize=3, label=None if kind in seen else kind)
+        seen.add(kind)
+    axes[1].plot([100 * fraction for fraction in published.PUBLISHED_VISCOSITY], list(published.PUBLISHED_VISCOSITY.values()), "D--", color="#222222", markersize=5,
+                 linewidth=0.8, label="50, Re = 10 (Huet, Wachs)")
+    axes[1].set(xlabel="volume fraction, %", ylabel="relative viscosity", ylim=(1, None))
+    axes[1].legend(fontsize=8)
+
+
+DRAW = {"inertia": draw_inertia, "crossing": draw_crossing, "suspension": draw_suspension}
+
+
+def draw(group, results, folder):
+    """Results: those of the group that have series."""
+    figure, axes = plt.subplots(1, 2, figsize=(10, 3.8))
+    DRAW[group](results, np.ravel(axes))
+    file = folder / f"{group}.png"
+    file.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(file, dpi=90)
+    plt.close(figure)
+    print(f"{group}: {file}")
