@@ -9,25 +9,28 @@ import averages
 import results as published
 
 COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#666666")
-RE = {"inertia_3": 3, "inertia_10": 10, "inertia_50": 50, "inertia_10_radius": 10, "inertia_10_young": 10}
+RE_COLORS = {3: COLORS[0], 10: COLORS[1], 50: COLORS[2]}
+OTHERS = {"radius": ":", "young": "-.", "cells": ":", "steps": "-."}  # readings and resolutions beside the three runs
+
+
+def reynolds_of(name):
+    """On the diameter, as published."""
+    return int(name.split("_")[1])
 
 
 def draw_inertia(results, axes):
-    colors = {3: COLORS[0], 10: COLORS[1], 50: COLORS[2]}
-    for axis, others in zip(axes, (False, True)):
-        for result in results:
-            is_other = result.name.count("_") > 1
-            if is_other and not others or not is_other and others and RE[result.name] != 10:
-                continue
-            style = {"inertia_10_radius": ":", "inertia_10_young": "-."}.get(result.name, "-" if result.resolution == "quick" else (0, (6, 1)))
-            axis.plot(result.capsules[0]["time"], result.capsules[0]["z"] / 2, color=COLORS[3 + others] if is_other else colors[RE[result.name]], linestyle=style, label=result.label)
-        for reynolds, (times, heights) in published.PUBLISHED_INERTIA.items():
-            if not others or reynolds == 10:
-                axis.plot(times, heights, "D", color=colors[reynolds], markersize=5)
+    """Left the three runs; right those that read the numbers otherwise, or are coarser, beside the run and the points that they belong to."""
+    others = [result for result in results if result.name.count("_") > 1]
+    beside = {reynolds_of(result.name) for result in others}
+    for axis, shown, numbers in ((axes[0], [result for result in results if result not in others], published.PUBLISHED_INERTIA), (axes[1], others, beside)):
+        for reynolds in numbers:
+            axis.plot(*published.PUBLISHED_INERTIA[reynolds], "D", color=RE_COLORS[reynolds], markersize=5)
+        for result in shown + [result for result in results if axis is axes[1] and result not in others and reynolds_of(result.name) in beside]:
+            style = OTHERS.get(result.name.split("_")[-1], "-" if result.resolution == "quick" else (0, (6, 1)))
+            axis.plot(result.capsules[0]["time"], result.capsules[0]["z"] / 2, color=RE_COLORS[reynolds_of(result.name)], linestyle=style, label=result.label)
         axis.axhline(0, color="#666666", linewidth=0.6)
         axis.set(xlabel=r"$\dot\gamma t$", ylabel="height $/D$")
         axis.legend(fontsize=8)
-    axes[1].set_title("Re = 10 read otherwise", fontsize=10)
 
 
 def draw_crossing(results, axes):

@@ -26,14 +26,16 @@ the shells and 162 control points; full: half of that and 642. Lengths in a, tim
 TITLES = {"inertia": "Pairs with inertia", "crossing": "A crossing pair of more viscous capsules", "suspension": "Suspensions between walls", "speed": "Capsule-strains a second"}
 ABOUT = {
     "inertia": "Doddi and Bagchi (2008): neo-Hookean, no prestress, centres at (∓2D, ±0.1D), a cube of 6.25D, walls across z. Capillary number and Reynolds number are read as μγ̇D/G_s = 0.05 and "
-    "Re = ργ̇D²/μ, which is `Shear number G` = 0.025 with `Scale modulus = shear` and `Reynolds number` = Re/4 here, on the radius. The two runs named otherwise read "
-    "Re on the radius, and the modulus as E h = 3 G_s. Height of the first capsule over D; published: digitised, ± 0.003. What is asked for: reversal as published and positions within 0.05 D.",
-    "crossing": "Lac, Morel and Barthès-Biesel (2007): Ca = 0.45, prestress 0.05, centres (∓4, 0, ±0.25), unbounded liquid. λ = 1 is compared with an independent solution in `flows.md`; for λ = 5 "
-    "there is nothing with numbers to compare with. Singh and Sarkar (Eur. Biophys. J. 44 (2015), from the abstract) say that a higher viscosity ratio leaves a smaller offset after the crossing.",
+    "Re = ργ̇D²/μ, which is `Shear number G` = 0.025 with `Scale modulus = shear` and `Reynolds number` = Re/4 here, on the radius. Two runs read "
+    "Re on the radius, and the modulus as E h = 3 G_s; two are coarser. Height of the first capsule over D; published: digitised, ± 0.003. What is asked for: reversal as published and positions within 0.05 D.",
+    "crossing": "Lac, Morel and Barthès-Biesel (2007): Ca = 0.45, prestress 0.05, centres (∓4, 0, ±0.25), in a box of 30 × 15 × 20, periodic along x and y; the published pair is in unbounded "
+    "liquid. λ = 1 in larger boxes and beside an independent solution: `flows.md`. For λ = 5 there are no numbers to compare with; Singh and Sarkar (Eur. Biophys. J. 2015) say, in the abstract, that a "
+    "higher viscosity ratio leaves a smaller offset after the crossing. Several capsules of another viscosity are not available in unbounded liquid.",
     "suspension": "Neo-Hookean spheres at random places in a cube, Ca = 0.1, λ = 1, walls across z. Means over time from γ̇t = "
     f"{averages.START} (shapes grow within one or two strains; the vertical line) to the end, ± the standard error of {averages.N_BLOCKS} blocks of that time: their standard deviation over the root of their number. It "
     "knows nothing of changes that are slower than a block, nor of the box and of the seed: runs with other seeds show these. Σ_xz with inertia has −Re⟨u_x u_z⟩ with it (`theory.md`, section 8.3). "
-    "Published: 50 capsules in a cube, Re = 10 on the radius, stress of the walls (Huet and Wachs 2023, recorded runs of their open case; their walls differ by up to 5 %).",
+    "Published: 50 capsules in a cube, Re = 10 on the radius, stress of the walls (Huet and Wachs 2023, recorded runs of their open case; their walls differ by up to 5 %). In Stokes flow Matsunaga et al. "
+    "(J. Fluid Mech. 786, 110 (2016), from the abstract, not its figures): for Ca ≥ 0.1 terms of third order in the volume fraction make 8 % of the viscosity above one at 40 %; D grows with the fraction, θ falls.",
     "speed": "16 spheres at 20 %, as above: capsules times γ̇t over the CPU seconds of all ranks, and over wall seconds times ranks, on a machine with two cores that others used at the same time, so that CPU seconds are the better measure. "
     "The setting is judged by the mean D of the capsules and the relative viscosity at γ̇t = 1 in runs of other cells, control points and steps.",
 }
@@ -46,7 +48,7 @@ def heading(group):
 def inertia_table(results):
     rows = []
     for result in results:
-        reynolds = figures.RE[result.name]
+        reynolds = figures.reynolds_of(result.name)
         times, heights = map(np.array, published.PUBLISHED_INERTIA[reynolds])
         shown = times <= result.end() + 1e-9
         differences = result.height_over_diameter(times[shown]) - heights[shown]
@@ -98,8 +100,22 @@ def seeds_text(results):
             parts.append(f"{number} at {100 * fraction:.3g} %: {Value(mean, error)} of {len(members)} seeds")
     fluxes = [f"{result.label}: {with_bar(result.averages['momentum_flux_xz'])}" for result in results
               if float(result.setting("Scene/Reynolds number", "0")) and "momentum_flux_xz" in result.averages]
+    stokes = [result for result in results if not float(result.setting("Scene/Reynolds number", "0")) and math.isfinite(result.averages["relative_viscosity"].mean)]
+    fit = fit_text([figures.fraction_of(result) for result in stokes], [result.averages["relative_viscosity"].mean for result in stokes])
     text = f"Relative viscosity over seeds, with the standard error of their means: {'; '.join(parts)}.\n" if parts else ""
+    text += f"\n{fit}" if fit else ""
     return text + (f"\nOf the relative viscosity −Re⟨u_x u_z⟩: {'; '.join(fluxes)}.\n" if fluxes else "")
+
+
+def fit_text(fractions, viscosities):
+    """What a polynomial of second order says of runs at three fractions or more."""
+    phi, above = np.array(fractions), np.array(viscosities) - 1
+    if len(set(np.round(phi, 3))) < 3:
+        return ""
+    matrix = np.stack([phi, phi**2], axis=1)
+    a, b = np.linalg.lstsq(matrix, above, rcond=None)[0]
+    off = np.abs(matrix @ [a, b] - above).max()
+    return f"All runs in Stokes flow by least squares: 1 + {a:.3g} φ + {b:.3g} φ², off by at most {off:.2g}.\n"
 
 
 def speed_table(results):

@@ -80,6 +80,8 @@ SCENES = {
     "inertia_50": inertia("Re = 50", 12.5),
     "inertia_10_radius": inertia("Re = 10 on the radius", 10),
     "inertia_10_young": inertia("Re = 10, Ca with E h", 2.5, **{"Scene/Scale modulus": "Young"}),
+    "inertia_50_cells": inertia("Re = 50, larger cells", 12.5, **{"Fluid mesh/Finest cell": "0.520834", "Fluid mesh/Coarsest cell": "2.083334"}),
+    "inertia_50_steps": inertia("Re = 50, longer steps", 12.5, **{"Time/Step": "0.4"}),
     "crossing_1": crossing(1),
     "crossing_5": crossing(5),
     **{f"random_8_{percent:02d}": suspension(8, percent, end=12, **COARSE_STEPS) for percent in (5, 10, 20, 30)},

@@ -73,7 +73,10 @@ TEST(Inertia, ProductsOfVelocitiesAreIntegratedExactly)
   mesh.adapt({Point(0.1, 0.2, 0.3), Point(1.9, -1.9, -1.6)});
   const TaylorHoodSpace      space(mesh);
   const dealii::Tensor<1, 3> c({0.7, -1.1, 0.4});
-  const FluidBlockVector     u        = nodal_velocity(space, [&](const Point &x) { return (1. - x[2] * x[2] / 4.) * c; });
+  const FluidBlockVector     u        = nodal_velocity(space, [&](const Point &x) {
+    const dealii::Tensor<1, 3> v = (1. - x[2] * x[2] / 4.) * c;
+    return std::array<double, 3>{{v[0], v[1], v[2]}};
+  });
   const auto                 products = integral_of_products(space, u.block(velocity_block));
   for (unsigned int i = 0; i < 3; ++i)
     for (unsigned int j = 0; j < 3; ++j)
