@@ -10,7 +10,7 @@ import results as published
 
 COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#666666")
 RE_COLORS = {3: COLORS[0], 10: COLORS[1], 50: COLORS[2]}
-OTHERS = {"radius": ":", "young": "-.", "cells": ":", "steps": "-."}  # readings and resolutions beside the three runs
+OTHERS = {"shear": "--", "radius": "-.", "cells": ":", "steps": "-."}  # readings and resolutions beside the three runs
 
 
 def reynolds_of(name):
