@@ -26,8 +26,8 @@ the shells and 162 control points; full: half of that and 642. Lengths in a, tim
 TITLES = {"inertia": "Pairs with inertia", "crossing": "A crossing pair of more viscous capsules", "suspension": "Suspensions between walls", "speed": "Capsule-strains a second"}
 ABOUT = {
     "inertia": "Doddi and Bagchi (2008): neo-Hookean, no prestress, centres at (∓2D, ±0.1D), a cube of 6.25D, walls across z. The numbers are on the diameter: μγ̇D/(E h) = 0.05 and "
-    "Re = ργ̇D²/μ, which is `Shear number G` = 0.025 and `Reynolds number` = Re/4 here, on the radius. What the modulus and the length are is not in the figures that we have: runs named so read "
-    "the modulus as G_s = E h/3 and Re on the radius. Two runs are coarser, for an error bar. Height of the first capsule over D; published: digitised, ± 0.003. What is asked for: reversal as "
+    "Re = ργ̇D²/μ, which is `Shear number G` = 0.025 and `Reynolds number` = Re/4 here, on the radius. This reading is the one that agrees; runs named so read "
+    "the modulus as G_s = E h/3, with which the capsules are slower to turn and at Re = 3 do not turn back at all, and Re on the radius. Two runs are coarser, for an error bar. Height of the first capsule over D; published: digitised, ± 0.003. What is asked for: reversal as "
     "published and positions within 0.05 D.",
     "crossing": "Lac, Morel and Barthès-Biesel (2007): Ca = 0.45, prestress 0.05, centres (∓4, 0, ±0.25), in a box of 30 × 15 × 20, periodic along x and y; the published pair is in unbounded "
     "liquid. λ = 1 in larger boxes and beside an independent solution: `flows.md`. For λ = 5 there are no numbers to compare with; Singh and Sarkar (Eur. Biophys. J. 2015) say, in the abstract, that a "
@@ -37,7 +37,7 @@ ABOUT = {
     "knows nothing of changes that are slower than a block, nor of the box and of the seed: runs with other seeds show these. Σ_xz with inertia has −Re⟨u_x u_z⟩ with it (`theory.md`, section 8.3). "
     "Published: 50 capsules in a cube, Re = 10 on the radius, stress of the walls (Huet and Wachs 2023, recorded runs of their open case; their walls differ by up to 5 %). In Stokes flow Matsunaga et al. "
     "(J. Fluid Mech. 786, 110 (2016), from the abstract, not its figures): for Ca ≥ 0.1 terms of third order in the volume fraction make 8 % of the viscosity above one at 40 %; D grows with the fraction, θ falls.",
-    "speed": "16 spheres at 20 %, as above: capsules times γ̇t over the CPU seconds of all ranks, and over wall seconds times ranks, on a machine with two cores that others used at the same time, so that CPU seconds are the better measure. "
+    "speed": "16 spheres at 20 %, as above: capsules times γ̇t over the CPU seconds of all ranks, and over wall seconds times ranks, on two cores that other programs used at the same time, so that CPU seconds are the better measure. "
     "The setting is judged by the mean D of the capsules and the relative viscosity at γ̇t = 1 in runs of other cells, control points and steps.",
 }
 
