@@ -55,6 +55,8 @@ class Result:
         """"done", or what became of it."""
         if self.record is None:
             return "not run"
+        if self.record["exit_code"] < 0 and self.capsules:
+            return f"stopped from outside at {self.end():g}"
         return "done" if self.record["exit_code"] == 0 else self.record["message"] or f"exit code {self.record['exit_code']}"
 
     def end(self):
