@@ -19,7 +19,7 @@ This page is written by
 
     benchmarks/suspensions/run.py [--quick | --full] --update-doc
 
-from the results that it finds; the parameter files are in `benchmarks/suspensions`, what a run sets beside them is in its `run.json`. quick: cells of about a third of a at
+from the results that it finds; the parameter files are in `benchmarks/suspensions`, what a run sets beside them is in its `run.json`. quick: cells of 0.29 to 0.43 a at
 the shells and 162 control points; full: half of that and 642. Lengths in a, times in 1/γ̇.
 """
 
@@ -35,7 +35,7 @@ ABOUT = {
     "suspension": "Neo-Hookean spheres at random places in a cube, Ca = 0.1, λ = 1, walls across z. Means over time from γ̇t = "
     f"{averages.START} (shapes grow within one or two strains; the vertical line) to the end, ± the standard error of {averages.N_BLOCKS} blocks of that time: their standard deviation over the root of their number. It "
     "knows nothing of changes that are slower than a block, nor of the box and of the seed: runs with other seeds show these. Σ_xz with inertia has −Re⟨u_x u_z⟩ with it (`theory.md`, section 8.3). "
-    "Published: 50 capsules in a cube, Re = 10 on the radius, stress of the walls (Huet and Wachs 2023, recorded runs of their open case; their walls differ by up to 5 %). In Stokes flow Matsunaga et al. "
+    "Published: 50 capsules in a cube, Re = 10 on the radius, stress of the walls (Huet and Wachs 2023, recorded runs of their open case; their walls differ by up to 5 %), with which runs without inertia need not agree. In Stokes flow Matsunaga et al. "
     "(J. Fluid Mech. 786, 110 (2016), from the abstract, not its figures): for Ca ≥ 0.1 terms of third order in the volume fraction make 8 % of the viscosity above one at 40 %; D grows with the fraction, θ falls.",
     "speed": "16 spheres at 20 %, as above: capsules times γ̇t over the CPU seconds of all ranks, and over wall seconds times ranks, on two cores that other programs used at the same time, so that CPU seconds are the better measure. "
     "The setting is judged by the mean D of the capsules and the relative viscosity at γ̇t = 1 in runs of other cells, control points and steps.",
