@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 #include <utility>
 
 using namespace tanktread;
@@ -19,13 +18,6 @@ namespace
   constexpr double finest_cell = 10. / 32., side = 10.;
 
   using Centres = std::vector<Eigen::RowVector3d>;
-
-  bool
-  is_root()
-  {
-    return dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
-  }
-
 
   /** Spheres of radius 1 in a box of 10a, whose forces and flows depend on positions alone. */
   struct Spheres : oracle::GivenForces
