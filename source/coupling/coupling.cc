@@ -58,51 +58,6 @@ namespace tanktread
 
 
   void
-  Coupling::evaluate(const ShellConfigurations &shells) const
-  {
-    on_all_ranks(layout_.communicator(), [&] {
-      for (const auto &shell : shells)
-        {
-          shell->points();
-          shell->normal_square();
-          if (interface_ == Interface::enriched)
-            {
-              shell->patches();
-              shell->point_areas();
-            }
-        }
-    });
-  }
-
-
-  ShellConfigurations
-  Coupling::present_shells(const ShellConfigurations &own, const ShellGuests &guests, const ShellConfigurations &known) const
-  {
-    const std::vector<unsigned int> &present = guests.present();
-    ShellFields                      x;
-    std::vector<ShellGuests::Block>  blocks;
-    for (const unsigned int c : present)
-      x.push_back(ControlPoints::Zero(layout_.capsules()[c].n_control_points(), 3));
-    for (unsigned int i = 0; i < own.size(); ++i)
-      x[guests.place_of_own(i)] = own[i]->x();
-    for (ControlPoints &field : x)
-      blocks.push_back({field.data(), std::size_t(field.size())});
-    guests.update(blocks);
-    ShellConfigurations result(present.size());
-    for (unsigned int i = 0; i < own.size(); ++i)
-      result[guests.place_of_own(i)] = own[i];
-    for (unsigned int p = 0; p < present.size(); ++p)
-      if (!result[p])
-        {
-          const Capsule &capsule = layout_.capsules()[present[p]];
-          const auto same = std::find_if(known.begin(), known.end(), [&](const auto &shell) { return &shell->capsule() == &capsule && shell->x() == x[p]; });
-          result[p]       = same != known.end() ? *same : std::make_shared<ShellConfiguration>(capsule, std::move(x[p]));
-        }
-    return result;
-  }
-
-
-  void
   Coupling::move(const ShellConfigurations &shells)
   {
     moved_ = false;
@@ -158,39 +113,6 @@ namespace tanktread
         shell->patches();
     });
     return ShellViscosity(*space_)(about, contrast_.ratio);
-  }
-
-
-  const ShellFields &
-  Coupling::at_guests(const ShellFields &own, ShellFields &memory) const
-  {
-    // A rank without guests may have capsules that are guests elsewhere.
-    const bool                       only_own = guests_.are_none_here();
-    const std::vector<unsigned int> &present  = guests_.present();
-    std::vector<ShellGuests::Block>  blocks;
-    memory.resize(only_own ? 0 : present.size());
-    for (unsigned int p = 0; p < memory.size(); ++p)
-      memory[p].resize(layout_.capsules()[present[p]].n_control_points(), 3);
-    for (unsigned int i = 0; !only_own && i < own.size(); ++i)
-      memory[guests_.place_of_own(i)] = own[i];
-    for (const ControlPoints &field : only_own ? own : memory)
-      blocks.push_back({const_cast<double *>(field.data()), std::size_t(field.size())}); // fields of own capsules are read only
-    guests_.update(blocks);
-    return only_own ? own : memory;
-  }
-
-
-  std::vector<double>
-  Coupling::at_guests(const std::vector<double> &own) const
-  {
-    std::vector<double>             result(guests_.present().size(), 0.);
-    std::vector<ShellGuests::Block> blocks;
-    for (unsigned int i = 0; i < own.size(); ++i)
-      result[guests_.place_of_own(i)] = own[i];
-    for (double &value : result)
-      blocks.push_back({&value, 1});
-    guests_.update(blocks);
-    return result;
   }
 
 
@@ -320,31 +242,6 @@ namespace tanktread
     ShellFields result = sum_moments(values_, &flux);
     for (unsigned int i = 0; i < result.size(); ++i)
       result[i] -= flux[guests_.place_of_own(i)] / shells_[i]->normal_square() * shells_[i]->volume_gradient();
-    return result;
-  }
-
-
-  ShellFields
-  Coupling::sum_moments(const std::vector<double> &values, std::vector<double> *const fluxes) const
-  {
-    std::size_t n = 0;
-    for (const ShellTransfer &transfer : transfers_)
-      n += 3 * std::size_t(transfer.capsule().n_control_points());
-    sums_.assign(n, 0.);
-    std::vector<ShellGuests::Block> blocks;
-    double                         *moments = sums_.data();
-    for (unsigned int p = 0; p < transfers_.size(); ++p)
-      {
-        blocks.push_back({moments, 3 * std::size_t(transfers_[p].capsule().n_control_points())});
-        if (fluxes != nullptr)
-          blocks.push_back({&(*fluxes)[p], 1});
-        transfers_[p].add_moments(values, moments);
-        moments += 3 * std::size_t(transfers_[p].capsule().n_control_points());
-      }
-    guests_.sum(blocks);
-    ShellFields result;
-    for (unsigned int i = 0; i < shells_.size(); ++i)
-      result.push_back(Eigen::Map<const ControlPoints>(blocks[(fluxes == nullptr ? 1 : 2) * guests_.place_of_own(i)].values, shells_[i]->x().rows(), 3));
     return result;
   }
 
@@ -494,30 +391,5 @@ namespace tanktread
     for (unsigned int i = 0; i < shells.size(); ++i)
       result.push_back(std::move(matrices[guests_.place_of_own(i)]));
     return result;
-  }
-
-
-  TriangleQuadrature
-  coupling_quadrature(const TriangleMesh &topology, const ControlPoints &x, const Interface interface, const double h)
-  {
-    const SubdivisionSurface surface(topology, triangle_quadrature(1), Derivatives::first);
-    const double             spacing = interface == Interface::enriched ? 0.3 * h : 0.5 * h;
-    const double             wanted  = area_weights(surface, x).maxCoeff() / (spacing * spacing);
-    unsigned int             n = 0, n_per_triangle = 3;
-    for (unsigned int n_points = 3; n_points < wanted; n_points *= 2)
-      {
-        n += n_per_triangle == 6;
-        n_per_triangle = 9 - n_per_triangle;
-      }
-    return triangle_quadrature(n_per_triangle, n);
-  }
-
-
-  CapsuleQuadrature
-  capsule_quadrature(const FittedShape &shape, const unsigned int mechanics, const Interface interface, const double h, const double viscosity_ratio)
-  {
-    return {triangle_quadrature(mechanics),
-            coupling_quadrature(shape.topology, shape.control_points, interface, h),
-            interface == Interface::enriched || viscosity_ratio != 1. ? Derivatives::second : Derivatives::first};
   }
 } // namespace tanktread
