@@ -128,7 +128,7 @@ def speed_table(results):
                   (averages.mean_of_capsules(result.capsules, "D"), (result.suspension["time"], result.suspension["relative_viscosity"]))]
         step = result.setting("Time/Step")
         rows.append([result.label, f"{float(result.setting('Fluid mesh/Finest cell')):.3g}", result.setting("Shell mesh/Level"), step, f"{values[0]:.5f}", f"{values[1]:.4f}", f"{result.end():g}",
-                     f"{result.cpu_seconds():.0f}", f"{result.strains() / result.cpu_seconds():.3g}", f"{result.strains() / wall:.2g}"])
+                     f"{result.cpu_seconds():.0f}", f"{result.strains() / result.cpu_seconds():.3g}", f"{result.strains() / wall:.2g}" if wall > 0. else "–"])  # runs of less than the record's digits
     return table(["", "h", "level", "Δt", "mean D at 1", "viscosity at 1", "γ̇t", "CPU s", "strains a CPU s", "strains a wall s and rank"], rows)
 
 
