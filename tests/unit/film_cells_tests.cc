@@ -72,13 +72,13 @@ TEST(FilmCells, MeshHasTheLevelsBetweenBothSizes)
 
 namespace
 {
-  /** Two spheres with that gap between them along x. */
+  /** The rank's own ones of two spheres with that gap between them along x. */
   ShellFields
   spheres(const StartedScene &scene, const double gap)
   {
     ShellFields result;
-    for (const double sign : {-1., 1.})
-      result.push_back(scene.capsule().initial().rowwise() + Eigen::RowVector3d(sign * (1. + 0.5 * gap), 0.03, 0.02));
+    for (const unsigned int c : scene.layout().own())
+      result.push_back(scene.capsules()[c].initial().rowwise() + Eigen::RowVector3d((c == 0 ? -1. : 1.) * (1. + 0.5 * gap), 0.03, 0.02));
     return result;
   }
 
@@ -105,8 +105,8 @@ TEST(FilmCells, SceneFollowsItsGapAndFlowsGoAlong)
   for (const auto &[gap, h] : {std::pair(0.7, 0.3125), std::pair(0.4, 0.15625), std::pair(0.3, 0.15625), std::pair(1., 0.3125), std::pair(2., 0.625)})
     {
       const ShellFields x = spheres(scene, gap);
-      for (unsigned int c = 0; c < 2; ++c)
-        scene.state.capsules[c].x = x[c];
+      for (unsigned int i = 0; i < x.size(); ++i)
+        scene.state.capsules[i].x = x[i];
       const double before = scene.level().finest_cell();
       if (h != before)
         {
