@@ -134,9 +134,23 @@ namespace tanktread
         const ShellConfigurations of_others = shells_of_others(layout, own, further);
         shells.insert(shells.end(), of_others.begin(), of_others.end());
         numbers.insert(numbers.end(), further.begin(), further.end());
-        ShellGap here = smallest_gap(shells, periods, reach, own.size());
-        here          = {here.gap, numbers.empty() ? 0 : numbers[here.first], numbers.empty() ? 0 : numbers[here.second]};
-                 result = least(here, layout.communicator());
+        // Pair by pair in the order of numbers, which says whose points are taken and whose surface: the same whoever holds them.
+        ShellGap   here;
+        const auto judge = [&](const std::size_t i, const std::size_t j) {
+          const bool in_order = numbers[i] <= numbers[j];
+          const auto first = in_order ? i : j, second = in_order ? j : i;
+          if (first != second && box_distance(boxes[numbers[first]], boxes[numbers[second]], periods) >= here.gap)
+            return;
+          ShellConfigurations both = {shells[first]};
+          if (first != second)
+            both.push_back(shells[second]);
+          if (const ShellGap gap = smallest_gap(both, periods, reach); gap.gap < here.gap)
+            here = {gap.gap, numbers[gap.first == 0 ? first : second], numbers[gap.second == 0 ? first : second]};
+        };
+        for (std::size_t i = 0; i < own.size(); ++i)
+          for (std::size_t j = i; j < shells.size(); ++j)
+            judge(i, j);
+        result = least(here, layout.communicator());
         if (result.gap <= radius)
           break;
       }
