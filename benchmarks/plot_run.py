@@ -24,7 +24,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 import matplotlib.ticker  # noqa: E402
 import numpy as np  # noqa: E402
 
-from run_files import contours_by_time, find_references, interpolated, number, of_each_capsule  # noqa: E402
+from run_files import contours_by_time, find_references, interpolated, number, tables_of_capsules  # noqa: E402
 from run_files import read_parameters, read_table, standard_columns, without_jumps  # noqa: E402
 
 RUN, SECOND, REFERENCES = "#0072B2", "#D55E00", ["#222222", "#D55E00", "#009E73", "#CC79A7"]
@@ -41,13 +41,12 @@ def load(folder, name, reader):
 
 def load_capsules(folder, stem, needed):
     """Tables of all capsules in their order; those without the columns needed are named and left out."""
-    files = of_each_capsule(folder, stem)
-    if not files:
+    tables = tables_of_capsules(folder, stem)
+    if not tables:
         print(f"{stem}.csv: missing in {folder}")
-    tables = [(file, read_table(file)[0]) for file in files]
     for file, table in tables:
         if not all(name in table for name in needed):
-            print(f"{file.name}: has no rows or no columns {', '.join(needed)}, left out")
+            print(f"{file}: has no rows or no columns {', '.join(needed)}, left out")
     return [table for _, table in tables if all(name in table for name in needed)]
 
 

@@ -60,6 +60,20 @@ def of_each_capsule(folder, stem):
     return sorted(numbered, key=lambda file: int(file.stem[len(stem) + 1:])) or [file for file in [folder / f"{stem}.csv"] if file.is_file()]
 
 
+def tables_of_capsules(folder, stem):
+    """[(where it is from, table)] of the capsules of a run in their order; one file of many capsules is taken apart by its column `capsule`."""
+    found = []
+    for file in of_each_capsule(folder, stem):
+        table = read_table(file)[0]
+        if "capsule" not in table:
+            found.append((file.name, table))
+            continue
+        for capsule in sorted(set(table["capsule"][np.isfinite(table["capsule"])])):
+            rows = table["capsule"] == capsule
+            found.append((f"{file.name}, capsule {capsule:g}", {name: column[rows] for name, column in table.items() if name != "capsule"}))
+    return found
+
+
 def contours_by_time(table):
     """[(time, x, z)] of consecutive rows with one time, each polyline closed."""
     starts = np.flatnonzero(np.diff(table["time"], prepend=math.nan) != 0)

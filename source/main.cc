@@ -5,6 +5,7 @@
 #include <tanktread/base/mpi_errors.h>
 #include <tanktread/base/mpi_start.h>
 #include <tanktread/base/version.h>
+#include <tanktread/simulation/shared_parameters.h>
 #include <tanktread/simulation/simulation.h>
 #include <tanktread/simulation/study.h>
 
@@ -29,7 +30,7 @@ namespace
         case Action::print_markdown:
           return tanktread::default_parameters(command_line.action == Action::print_markdown);
         case Action::validate:
-          tanktread::read_parameters(command_line.file, command_line.overrides);
+          tanktread::read_shared_parameters(command_line.file, command_line.overrides, MPI_COMM_WORLD);
           return "valid\n";
         case Action::run:
           break;
@@ -46,7 +47,7 @@ namespace
       std::cout << text << std::flush;
     if (command_line.action == tanktread::CommandLine::Action::run)
       {
-        const tanktread::Parameters parameters = tanktread::read_parameters(command_line.file, command_line.overrides);
+        const tanktread::Parameters parameters = tanktread::read_shared_parameters(command_line.file, command_line.overrides, MPI_COMM_WORLD);
         if (parameters.study.is_wanted())
           tanktread::Study(parameters, command_line.overrides, MPI_COMM_WORLD).run();
         else

@@ -107,7 +107,7 @@ class Result:
         if self.record is None:
             return
         folder = run.folder(resolution)
-        tables = [run_files.read_table(file)[0] for file in run_files.of_each_capsule(folder, "history")]
+        tables = [table for _, table in run_files.tables_of_capsules(folder, "history")]
         self.capsules = [with_way(run_files.standard_columns(table)) for table in tables if "time" in table]
         settings = self.record["settings"]
         frame = float(settings.get("Scene/Frame velocity", "0").split(",")[0])

@@ -122,7 +122,7 @@ class Measured:
         if not self.is_there:
             return
         self.load = float((folder.parent / "load.txt").read_text())
-        history, _ = run_files.read_table(histories[0])
+        _, history = run_files.tables_of_capsules(folder, "history")[0]
         self.read_history(history)
         times = times_of_rows(history["wall_time"], histories[0].stat().st_mtime)
         self.totals = [read_totals(file) for file in of_each_rank(self.counts, "totals")]

@@ -50,7 +50,7 @@ def log_of(folder):
 
 
 def histories_of(folder):
-    return [table for table in (run_files.read_table(file)[0] for file in run_files.of_each_capsule(folder, "history")) if table]
+    return [table for _, table in run_files.tables_of_capsules(folder, "history") if table]
 
 
 def warnings_in(log):

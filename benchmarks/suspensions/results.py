@@ -39,7 +39,7 @@ class Result:
         self.name, self.resolution, self.scene = name, resolution, scenes.SCENES[name]
         run = scenes.run_of(name)
         self.record, self.folder = run.record(resolution), run.folder(resolution)
-        tables = [run_files.read_table(file)[0] for file in run_files.of_each_capsule(self.folder, "history")] if self.record else []
+        tables = [table for _, table in run_files.tables_of_capsules(self.folder, "history")] if self.record else []
         self.capsules = [run_files.standard_columns(table) for table in tables if "time" in table]
         file = self.folder / "suspension.csv"
         self.suspension = run_files.read_table(file)[0] if self.record and file.is_file() else {}

@@ -41,13 +41,15 @@ namespace tanktread
     {
       std::string text = "Lengths in a (radius of the sphere of a capsule's volume), viscosity in mu (outer fluid),\n";
       if (run.has_rate)
-        text += "time in 1/gamma (rate of the flow).\n  flow = " + run.flow + "\n  G    = " + number("%-10.6g", run.G) + "mu gamma a / (E h)\n  Ca   = " +
-          number("%-10.6g", 3 * run.G) + "mu gamma a / G_s = 3 G\n";
+        text += "time in 1/gamma (rate of the flow).\n  flow = " + run.flow + "\n  G    = " + number("%-10.6g", run.G) +
+          "mu gamma a / (E h)\n  Ca   = " + number("%-10.6g", 3 * run.G) + "mu gamma a / G_s = 3 G\n";
       else
         text += "time in mu a^3 / kappa_B.\n  flow = " + run.flow + "\n";
       text += "  khat = " + number("%-10.6g", run.khat) + "kappa_B / (a^2 E h)\n  box  = " + run.box + "\n";
       if (run.n_capsules > 1)
         text += "  N    = " + std::to_string(run.n_capsules) + " capsules; D_xz and theta below are those of the first, the volume error is the largest\n";
+      if (!run.kinds.empty())
+        text += "  capsules " + run.kinds + "\n";
       if (run.Re > 0.)
         text += "  Re   = " + number("%-10.6g", run.Re) + (run.has_rate ? "rho gamma a^2 / mu: with inertia\n" : "rho kappa_B / (mu^2 a): with inertia\n");
       return text;

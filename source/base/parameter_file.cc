@@ -328,8 +328,8 @@ namespace tanktread
     return reader.finish();
   }
 
-  ParameterSource
-  read_parameter_file(dealii::ParameterHandler &prm, const std::string &file_name, const std::vector<std::string> &overrides)
+  std::string
+  text_of_parameter_file(const std::string &file_name)
   {
     std::ifstream     file(file_name);
     std::stringstream text;
@@ -337,6 +337,12 @@ namespace tanktread
     const bool is_empty = file && file.peek() == std::ifstream::traits_type::eof() && !file.bad();
     if (!is_empty && !(file && text << file.rdbuf()))
       throw InputError("cannot read the parameter file " + quoted(file_name) + "; allowed: a readable file");
-    return read_parameter_text(prm, text.str(), file_name, overrides);
+    return text.str();
+  }
+
+  ParameterSource
+  read_parameter_file(dealii::ParameterHandler &prm, const std::string &file_name, const std::vector<std::string> &overrides)
+  {
+    return read_parameter_text(prm, text_of_parameter_file(file_name), file_name, overrides);
   }
 } // namespace tanktread

@@ -117,25 +117,25 @@ namespace tanktread
 
 
   void
-  Coupling::set_point_forces(const ShellFields &g, std::vector<double> &forces) const
-  {
-    const ShellFields &present = at_guests(g, fields_);
-    forces.resize(3 * interpolation_->local_points().size());
-    for (unsigned int p = 0; p < transfers_.size(); ++p)
-      transfers_[p].set_point_forces(present[p], forces);
-  }
-
-
-  void
   Coupling::extend(const ShellFields &g, ExtendedForces &forces, const std::vector<double> &pressure_jumps) const
   {
-    set_point_forces(g, forces.at_points);
-    std::vector<double> normal_parts(g.size(), 0.);
-    forces.pressure_jumps = at_guests(pressure_jumps);
-    if (!jumps_->are_none())
-      for (unsigned int i = 0; i < g.size(); ++i)
-        normal_parts[i] = shells_[i]->volume_gradient().cwiseProduct(g[i]).sum() / shells_[i]->normal_square(); // m . f = v . g
-    forces.normal_parts = at_guests(normal_parts);
+    NumbersOfCapsules numbers(guests_.present().size(), {{0., 0.}}); // normal part and pressure jump
+    for (unsigned int i = 0; i < g.size(); ++i)
+      {
+        auto &[normal_part, pressure_jump] = numbers[guests_.place_of_own(i)];
+        if (!jumps_->are_none())
+          normal_part = shells_[i]->volume_gradient().cwiseProduct(g[i]).sum() / shells_[i]->normal_square(); // m . f = v . g
+        if (!pressure_jumps.empty())
+          pressure_jump = pressure_jumps[i];
+      }
+    set_point_forces(g, forces.at_points, &numbers);
+    forces.normal_parts.clear();
+    forces.pressure_jumps.clear();
+    for (const auto &[normal_part, pressure_jump] : numbers)
+      {
+        forces.normal_parts.push_back(normal_part);
+        forces.pressure_jumps.push_back(pressure_jump);
+      }
     if (jumps_->are_none())
       return;
     for (unsigned int p = 0; p < transfers_.size(); ++p)

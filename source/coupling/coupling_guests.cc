@@ -55,7 +55,7 @@ namespace tanktread
 
 
   const ShellFields &
-  Coupling::at_guests(const ShellFields &own, ShellFields &memory) const
+  Coupling::at_guests(const ShellFields &own, ShellFields &memory, NumbersOfCapsules *const numbers) const
   {
     // A rank without guests may have capsules that are guests elsewhere.
     const bool                       only_own = guests_.are_none_here();
@@ -66,24 +66,25 @@ namespace tanktread
       memory[p].resize(layout_.capsules()[present[p]].n_control_points(), 3);
     for (unsigned int i = 0; !only_own && i < own.size(); ++i)
       memory[guests_.place_of_own(i)] = own[i];
-    for (const ControlPoints &field : only_own ? own : memory)
-      blocks.push_back({const_cast<double *>(field.data()), std::size_t(field.size())}); // fields of own capsules are read only
+    for (unsigned int p = 0; p < present.size(); ++p)
+      {
+        const ControlPoints &field = only_own ? own[p] : memory[p];
+        blocks.push_back({const_cast<double *>(field.data()), std::size_t(field.size())}); // fields of own capsules are read only
+        if (numbers != nullptr)
+          blocks.push_back({(*numbers)[p].data(), (*numbers)[p].size()});
+      }
     guests_.update(blocks);
     return only_own ? own : memory;
   }
 
 
-  std::vector<double>
-  Coupling::at_guests(const std::vector<double> &own) const
+  void
+  Coupling::set_point_forces(const ShellFields &g, std::vector<double> &forces, NumbersOfCapsules *const numbers) const
   {
-    std::vector<double>             result(guests_.present().size(), 0.);
-    std::vector<ShellGuests::Block> blocks;
-    for (unsigned int i = 0; i < own.size(); ++i)
-      result[guests_.place_of_own(i)] = own[i];
-    for (double &value : result)
-      blocks.push_back({&value, 1});
-    guests_.update(blocks);
-    return result;
+    const ShellFields &present = at_guests(g, fields_, numbers);
+    forces.resize(3 * interpolation_->local_points().size());
+    for (unsigned int p = 0; p < transfers_.size(); ++p)
+      transfers_[p].set_point_forces(present[p], forces);
   }
 
 

@@ -149,14 +149,14 @@ namespace tanktread
 
 
   ShellGap
-  smallest_gap(const ShellConfigurations &shells, const std::array<double, 3> &periods, const double reach, const std::size_t n_own)
+  smallest_gap(const ShellConfigurations &shells, const std::array<double, 3> &periods, const double reach)
   {
     constexpr unsigned int far_stride = 16;
     ShellGap               result;
     std::vector<Surface>   surfaces;
     for (const auto &shell : shells)
       surfaces.emplace_back(*shell);
-    for (unsigned int c = 0; c < std::min(shells.size(), n_own); ++c)
+    for (unsigned int c = 0; c < shells.size(); ++c)
       for (unsigned int d = c; d < shells.size(); ++d)
         for (const Eigen::RowVector3d &shift : image_shifts(shells[d]->x().colwise().mean(), shells[c]->x().colwise().mean(), periods))
           {

@@ -15,7 +15,6 @@ namespace tanktread
   void
   ShellParameters::add_parameters(dealii::ParameterHandler &prm)
   {
-    prm.enter_subsection("Capsule");
     add_enum_parameter(prm,
                        "Membrane law",
                        law,
@@ -38,7 +37,6 @@ namespace tanktread
                       "Thickness h of the undeformed shell in a; its resistance to bending comes on top of 'Reduced bending modulus' and is unstressed in the "
                       "stress-free shape. 0: a membrane. With neo-Hookean only.",
                       dealii::Patterns::Double(0.));
-    prm.leave_subsection();
   }
 
 

@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 
 #include <tanktread/base/exceptions.h>
+#include <tanktread/base/number_text.h>
 #include <tanktread/base/parameter_file.h>
 #include <tanktread/simulation/accuracy.h>
 #include <tanktread/simulation/parameters.h>
@@ -13,7 +14,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iomanip>
 #include <limits>
 #include <sstream>
 
@@ -23,8 +23,6 @@ namespace tanktread
   {
     // Parts of the target that each cause may have.
     constexpr double of_cells = 0.45, of_steps = 0.3, of_newton = 0.2, of_stop = 0.5, of_control_mesh = 0.55;
-
-    constexpr double far_beyond_target = 10.; // what a file sets is warned of from there on
 
     constexpr double hardly_larger = 1.1; // than wanted: a cell for which there is 60 % of the target
 
@@ -37,16 +35,6 @@ namespace tanktread
     constexpr double newton_factor      = 0.1;                                 // over Solver/Newton tolerance
     constexpr double ungraded_far_cells = 1e-4, graded_far_cells = 2e-5;       // cells away from the shell, Fluid mesh/Grading = 0 and 3
     constexpr double faces_factor = 8.;                                        // over (a/l)^3
-
-
-    std::string
-    number(const double value)
-    {
-      std::ostringstream text;
-      text.precision(6);
-      text << value;
-      return text.str();
-    }
 
 
     bool
@@ -72,19 +60,31 @@ namespace tanktread
     }
 
 
+    /** Radius of the smallest capsules, in a: what the cells have to be measured by. */
     double
-    cells_error(const Parameters &parameters, const double h)
+    smallest_size(const Parameters &parameters)
     {
+      double result = parameters.kinds[0].shape.size;
+      for (const KindParameters &kind : parameters.kinds)
+        result = std::min(result, kind.shape.size);
+      return result;
+    }
+
+
+    double
+    cells_error(const Parameters &parameters, double h)
+    {
+      h /= smallest_size(parameters);
       const double uniform = cells_factor * std::pow(h, cells_order);
       return has_contrast(parameters) ? std::max(uniform, factor_of_contrast(parameters) * std::pow(h, contrast_order)) : uniform;
     }
 
 
-    /** How long the initial shape is along its principal axes, in a, the shortest first. */
+    /** How long an initial shape is along its principal axes, in a, the shortest first. */
     Eigen::Vector3d
-    initial_lengths(const Parameters &parameters)
+    initial_lengths(const KindParameters &kind)
     {
-      const FittedShape     shape  = make_capsule(parameters.capsule, 2);
+      const FittedShape     shape  = make_capsule(kind.shape, 2);
       const ControlPoints   x      = shape.control_points.rowwise() - shape.control_points.colwise().mean();
       const Eigen::Matrix3d axes   = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(Eigen::Matrix3d(x.transpose() * x)).eigenvectors();
       const ControlPoints   along  = x * axes;
@@ -97,8 +97,12 @@ namespace tanktread
     double
     control_mesh_error(const Parameters &parameters, const int level)
     {
-      const Eigen::Vector3d length = initial_lengths(parameters);
-      const double          rim    = std::max(1., std::pow(length[2] / length[0] / 1.5, 2.)); // flat shapes are curved more sharply
+      double rim = 1.; // flat shapes are curved more sharply
+      for (const KindParameters &kind : parameters.kinds)
+        {
+          const Eigen::Vector3d length = initial_lengths(kind);
+          rim                          = std::max(rim, std::pow(length[2] / length[0] / 1.5, 2.));
+        }
       return rim * control_mesh_at_level_1 * std::pow(control_mesh_gain, 1 - level);
     }
 
@@ -111,6 +115,7 @@ namespace tanktread
       double       h     = std::pow(error / cells_factor, 1. / cells_order);
       if (has_contrast(parameters))
         h = std::min(h, std::pow(error / factor_of_contrast(parameters), 1. / contrast_order));
+      h *= smallest_size(parameters);
       const double unit = std::pow(10., std::floor(std::log10(h)) - 2.);
       return unit * std::floor(h / unit);
     }
@@ -120,7 +125,7 @@ namespace tanktread
     double
     initial_radius(const Parameters &parameters)
     {
-      const FittedShape shape = make_capsule(parameters.capsule, 2);
+      const FittedShape shape = make_capsule(parameters.kinds[0].shape, 2);
       return std::sqrt(shape.control_points.rowwise().squaredNorm().maxCoeff());
     }
 
@@ -206,8 +211,9 @@ namespace tanktread
     stays_in_the_middle(const Parameters &parameters)
     {
       const std::vector<double> &frame = parameters.scene.frame_velocity;
-      const PlacementParameters &list  = parameters.placement;
-      return list.placement == Placement::list && list.centres.size() == 1 && list.places()[0].centre.norm() < 1e-12 && frame == std::vector<double>(3, 0.);
+      const PlacementParameters &list  = parameters.kinds[0].placement;
+      return parameters.kinds.size() == 1 && list.placement == Placement::list && list.centres.size() == 1 && list.places()[0].centre.norm() < 1e-12 &&
+        frame == std::vector<double>(3, 0.);
     }
 
 
@@ -264,13 +270,20 @@ namespace tanktread
   double
   expected_deformation(const Parameters &parameters)
   {
-    const Eigen::Vector3d length  = initial_lengths(parameters);
-    const double          initial = (length[2] - length[0]) / (length[2] + length[0]);
-    if (parameters.scene.flow == Flow::quiescent)
-      return std::max(initial, 0.02);
-    // Neo-Hookean sphere, flat reference, Ca = 3 G: D = (25/12) Ca / (1 + 33 khat).
-    const double G = 1. / parameters.scene.surface_young_modulus(), khat = parameters.scene.bending_modulus() * G, small = 6.25 * G / (1. + 33. * khat);
-    return std::max({initial, small / (1. + small), 0.005});
+    double result = parameters.scene.flow == Flow::quiescent ? 0.02 : 0.005;
+    for (const KindParameters &kind : parameters.kinds)
+      {
+        const Eigen::Vector3d length = initial_lengths(kind);
+        result                       = std::max(result, (length[2] - length[0]) / (length[2] + length[0]));
+        if (parameters.scene.flow == Flow::quiescent)
+          continue;
+        // Neo-Hookean sphere, flat reference, Ca = 3 G: D = (25/12) Ca / (1 + 33 khat), with its own radius.
+        const ShellModuli moduli = parameters.moduli(kind);
+        const double      R = kind.shape.size, G = R / moduli.surface_young_modulus, khat = moduli.bending_modulus / (moduli.surface_young_modulus * R * R);
+        const double      small = 6.25 * G / (1. + 33. * khat);
+        result                  = std::max(result, small / (1. + small));
+      }
+    return result;
   }
 
 
@@ -292,22 +305,22 @@ namespace tanktread
       {
         const Cells cells = unbounded_box(parameters, h);
         choose("Scene", "Boundary", "unbounded");
-        choose("Scene", "Box side", number(cells.side));
-        choose("Fluid mesh", "Coarsest cell", number(cells.coarsest));
-        choose("Fluid mesh", "Finest cell", number(1.0001 * h));
+        choose("Scene", "Box side", number_text(cells.side));
+        choose("Fluid mesh", "Coarsest cell", number_text(cells.coarsest));
+        choose("Fluid mesh", "Finest cell", number_text(1.0001 * h));
       }
     else if (!finest_is_set)
       {
         const Cells cells = given_box(parameters, h, coarsest_is_set);
-        choose("Fluid mesh", "Coarsest cell", number(cells.coarsest));
-        choose("Fluid mesh", "Finest cell", number(std::min(1.0001 * cells.finest, cells.coarsest)));
+        choose("Fluid mesh", "Coarsest cell", number_text(cells.coarsest));
+        choose("Fluid mesh", "Finest cell", number_text(std::min(1.0001 * cells.finest, cells.coarsest)));
       }
     if (ungraded_far_cells > 0.5 * of_cells * target)
       choose("Fluid mesh", "Grading", "3");
-    if (parameters.capsule.shape != Shape::file)
+    if (!parameters.has_mesh_file())
       {
         // Where a membrane without bending stiffness is compressed it wrinkles, on a finer control mesh the more.
-        const int finest = parameters.scene.bending_modulus() == 0. ? 2 : 5;
+        const int finest = parameters.bends() ? 5 : 2;
         int       level  = 1;
         while (control_mesh_error(parameters, level) > of_control_mesh * target && level < finest)
           ++level;
@@ -318,13 +331,13 @@ namespace tanktread
     if (!source.is_set("Time/Step") && std::isfinite(factor_of_scheme(parameters)))
       {
         choose("Time", "Step", "1");
-        choose("Time", "Tolerance", number(of_steps * target * D / (steps_factor * factor_of_scheme(parameters) * memory_of_shape(parameters))));
+        choose("Time", "Tolerance", number_text(of_steps * target * D / (steps_factor * factor_of_scheme(parameters) * memory_of_shape(parameters))));
       }
     if (!source.is_set("Time/Steady tolerance") && parameters.scene.oscillation_frequency == 0. && stays_in_the_middle(parameters))
-      choose("Time", "Limit tolerance", number(of_stop * target));
+      choose("Time", "Limit tolerance", number_text(of_stop * target));
     const double newton = std::clamp(of_newton * target * D / (newton_factor * memory_of_shape(parameters)), 1e-7, 1e-2);
-    choose("Solver", "Newton tolerance", number(newton));
-    choose("Solver", "Volume tolerance", number(std::min(1e-3, 0.01 * newton)));
+    choose("Solver", "Newton tolerance", number_text(newton));
+    choose("Solver", "Volume tolerance", number_text(std::min(1e-3, 0.01 * newton)));
     return result;
   }
 
@@ -336,11 +349,11 @@ namespace tanktread
     std::vector<ErrorShare> result;
     if (parameters.solver.interface == Interface::enriched)
       {
-        const double order = cells_error(parameters, h) > cells_factor * std::pow(h, cells_order) ? contrast_order : cells_order;
+        const double order = cells_error(parameters, h) > cells_factor * std::pow(h / smallest_size(parameters), cells_order) ? contrast_order : cells_order;
         result.push_back({"cells", cells_error(parameters, h), std::pow(2., 2.3 / order)});
       }
     result.push_back({"cells away from the shell", parameters.fluid_mesh.grading < 3 ? ungraded_far_cells : graded_far_cells, 1.2});
-    if (parameters.capsule.shape != Shape::file)
+    if (!parameters.has_mesh_file())
       result.push_back({"control mesh", control_mesh_error(parameters, parameters.shell_mesh.level), 1.2});
     if (parameters.time.tolerance > 0. && std::isfinite(factor_of_scheme(parameters)))
       result.push_back({"steps",
@@ -355,45 +368,5 @@ namespace tanktread
     if (parameters.time.limit_tolerance > 0.)
       result.push_back({"stop", parameters.time.limit_tolerance, 1.05});
     return result;
-  }
-
-
-  namespace
-  {
-    /** Whether the parameter that decides on a cause of errors has not been chosen for the target. */
-    bool
-    is_set_by_the_file(const std::vector<Choice> &choices, const std::string &cause)
-    {
-      const std::string name = cause == "cells" ? "Finest cell" : cause == "control mesh" ? "Level" : cause == "steps" ? "Tolerance" : "";
-      return !name.empty() && std::none_of(choices.begin(), choices.end(), [&](const Choice &choice) { return choice.name == name; });
-    }
-  } // namespace
-
-
-  std::string
-  accuracy_text(const Parameters &parameters)
-  {
-    std::ostringstream text;
-    text << std::setprecision(2) << "Chosen for Accuracy/Target error = " << parameters.accuracy.target_error << ":\n";
-    for (const Choice &choice : parameters.choices)
-      text << "  " << choice.section << '/' << choice.name << " = " << choice.value << '\n';
-    if (parameters.choices.empty())
-      text << "  nothing, all is set\n";
-    text << "Expected errors of D, relative to its largest value, about " << expected_deformation(parameters) << ":\n";
-    double      sum = 0.;
-    std::string warnings;
-    for (const ErrorShare &share : expected_errors(parameters))
-      {
-        sum += share.error;
-        if (share.error > far_beyond_target * parameters.accuracy.target_error && is_set_by_the_file(parameters.choices, share.cause))
-          warnings += "WARNING: what the file sets is too coarse for Accuracy/Target error: " + share.cause + ", expected to add " + number(share.error) +
-            " to the error of D. Leave it to the target.\n";
-        text << "  " << std::left << std::setw(32) << share.cause << std::setw(9) << share.error << "half of it: " << share.cost_of_half << " times the time\n";
-      }
-    if (parameters.time.tolerance == 0.)
-      text << "  " << std::setw(32) << "steps"
-           << "not known: Time/Tolerance is 0\n";
-    text << "  " << std::setw(32) << "sum, if none cancels another" << sum << '\n' << warnings;
-    return text.str();
   }
 } // namespace tanktread

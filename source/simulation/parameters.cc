@@ -20,20 +20,22 @@ namespace tanktread
 {
   namespace
   {
-    /** Reads the mesh file, if there is one, and throws InputError unless it is a closed surface. */
-    void
-    check_mesh_file(const CapsuleShapeParameters &capsule)
+    /** Reads the mesh file of each kind that has one. Returns a line for each that is no closed surface. */
+    std::string
+    read_mesh_files(std::vector<KindParameters> &kinds, const ParameterSource &source)
     {
-      if (capsule.shape != Shape::file || capsule.file.empty())
-        return;
-      try
-        {
-          check_closed_surface(read_triangle_mesh(capsule.file), "Mesh file '" + capsule.file + "'");
-        }
-      catch (const InputError &error)
-        {
-          throw InputError(std::string("Capsule/Mesh file: ") + error.what());
-        }
+      std::string errors;
+      for (KindParameters &kind : kinds)
+        try
+          {
+            if (kind.shape.shape == Shape::file && !kind.shape.file.empty())
+              kind.shape.mesh = std::make_shared<const TriangleMesh>(read_closed_surface(kind.shape.file));
+          }
+        catch (const InputError &error)
+          {
+            errors += (errors.empty() ? "" : "\n") + source.locate(kind.section + "/Mesh file: " + error.what());
+          }
+      return errors;
     }
 
     /** What the dial looks at. */
@@ -44,9 +46,8 @@ namespace tanktread
         {
           parameters.accuracy.check();
           parameters.scene.check();
-          parameters.capsule.check();
-          parameters.placement.check();
-          check_mesh_file(parameters.capsule);
+          for (const KindParameters &kind : parameters.kinds)
+            kind.check();
           parameters.fluid_mesh.check(parameters.scene.box());
           return true;
         }
@@ -71,18 +72,27 @@ namespace tanktread
     }
 
     void
-    check_shell_mesh(const ShellMeshParameters &mesh, const ShellParameters &shell)
+    check_shell_mesh(const Parameters &parameters)
     {
-      if (mesh.even == EvenControlMesh::always && !shell.place_is_free())
-        throw InputError(std::string("Shell mesh/Even control mesh is always; allowed where ") +
-                         (shell.reference == ReferenceCurvature::initial ? "Capsule/Reference curvature is initial" : "the shell has a membrane") +
-                         ", so that the place of the material matters: automatic or never.");
+      const bool is_even = parameters.control_mesh_stays_even();
+      for (const KindParameters &kind : parameters.kinds)
+        {
+          const ShellParameters &shell = kind.shell;
+          if (parameters.shell_mesh.even == EvenControlMesh::always && !shell.place_is_free())
+            throw InputError("Shell mesh/Even control mesh is always; allowed where " +
+                             (shell.reference == ReferenceCurvature::initial ? kind.section + "/Reference curvature is initial" : "the shell has a membrane") +
+                             ", so that the place of the material matters: automatic or never.");
+          if (is_even && !shell.place_is_free())
+            throw InputError(
+              "Shell mesh/Even control mesh is automatic, which moves the control points of capsules without a membrane and with Bending form moment-only along their shells; allowed where " +
+              kind.section + " is another kind, whose points have to stay: never.");
+        }
     }
 
     void
     check_study(const Parameters &parameters)
     {
-      parameters.study.check(parameters.capsule.shape == Shape::file ? -1 : int(parameters.shell_mesh.level),
+      parameters.study.check(parameters.has_mesh_file() ? -1 : int(parameters.shell_mesh.level),
                              parameters.time.steady_tolerance > 0. || parameters.time.limit_tolerance > 0.,
                              parameters.scene.boundary == Boundary::unbounded,
                              parameters.accuracy.target_error > 0.);
@@ -101,51 +111,78 @@ namespace tanktread
     complete_file_names(dealii::ParameterHandler &prm, const Parameters &parameters)
     {
       const std::filesystem::path file = std::filesystem::absolute(parameters.file);
-      if (!parameters.capsule.file.empty())
-        set(prm, "Capsule", "Mesh file", (file.parent_path() / parameters.capsule.file).lexically_normal().string());
-      if (!parameters.placement.file.empty())
-        set(prm, "Capsule", "Places file", (file.parent_path() / parameters.placement.file).lexically_normal().string());
+      for (const KindParameters &kind : parameters.kinds)
+        {
+          if (!kind.shape.file.empty())
+            set(prm, kind.section, "Mesh file", (file.parent_path() / kind.shape.file).lexically_normal().string());
+          if (!kind.placement.file.empty())
+            set(prm, kind.section, "Places file", (file.parent_path() / kind.placement.file).lexically_normal().string());
+        }
       if (parameters.output.directory.empty())
         set(prm, "Output", "Directory", "output/" + file.stem().string());
     }
 
-    /** Random places do not depend on the control mesh: the shape's points on a coarse one are enough. */
-    std::vector<Place>
-    random_places(const Parameters &parameters)
+    void
+    set_places(dealii::ParameterHandler &prm, const std::string &section, const std::vector<Place> &places)
     {
-      const PlacementParameters &placement = parameters.placement;
-      const Box                  box       = parameters.scene.box();
-      const double               face_gap  = parameters.scene.boundary == Boundary::unbounded ? UnboundedLiquid::least_distance : 0.;
-      try
-        {
-          return random_places(
-            {placement.number_in(box.volume()), placement.seed, placement.least_gap, std::max(placement.least_gap, face_gap), placement.turned},
-            make_capsule(parameters.capsule, 2),
-            box);
-        }
-      catch (const InputError &error)
-        {
-          throw InputError(std::string(placement.number > 0 ? "Capsule/Number: " : "Capsule/Volume fraction: ") + error.what());
-        }
+      const auto [centres, rotations] = as_lists(places);
+      set(prm, section, "Placement", "list");
+      set(prm, section, "Centres", centres);
+      set(prm, section, "Rotations", rotations);
     }
 
-    /** Makes a list of places from a file or at random. */
+    /** Makes lists of places of files. */
     void
-    place_capsules(dealii::ParameterHandler &prm, const Parameters &parameters, const ParameterSource &source)
+    read_places_files(dealii::ParameterHandler &prm, const Parameters &parameters, const ParameterSource &source)
     {
-      if (parameters.placement.placement == Placement::list)
+      for (const KindParameters &kind : parameters.kinds)
+        if (kind.placement.placement == Placement::file)
+          try
+            {
+              set_places(prm, kind.section, read_places(kind.placement.file));
+            }
+          catch (const InputError &error)
+            {
+              throw InputError(source.locate(kind.in_section(error.what())));
+            }
+    }
+
+    /** Makes lists of random places, of all kinds that have such together. */
+    void
+    choose_random_places(dealii::ParameterHandler &prm, const Parameters &parameters, const ParameterSource &source)
+    {
+      const Box                 box      = parameters.scene.box();
+      const double              face_gap = parameters.scene.boundary == Boundary::unbounded ? UnboundedLiquid::least_distance : 0.;
+      const PlacementParameters first    = parameters.kinds[0].placement;
+      std::vector<KindInPlace>  kinds;
+      std::string               wanted_by; // the parameter that asks for random places first
+      for (const KindParameters &kind : parameters.kinds)
+        {
+          const PlacementParameters &placement = kind.placement;
+          const bool                 is_random = placement.placement == Placement::random;
+          // Random places do not depend on the control mesh: the shape's points on a coarse one are enough.
+          kinds.push_back({make_capsule(kind.shape, 2),
+                           is_random ? placement.number_in(box.volume(), kind.shape.size) : 0,
+                           placement.turned,
+                           is_random ? std::vector<Place>() : placement.places()});
+          if (is_random && wanted_by.empty())
+            wanted_by = kind.section + (placement.number > 0 ? "/Number: " : "/Volume fraction: ");
+          if (is_random && (placement.seed != first.seed || placement.least_gap != first.least_gap))
+            throw InputError(source.locate(kind.section + (placement.seed != first.seed ? "/Seed" : "/Least gap") +
+                                           " is not that of section Capsule; allowed: that one, since all capsules are placed together."));
+        }
+      if (wanted_by.empty())
         return;
       try
         {
-          const auto [centres, rotations] =
-            as_lists(parameters.placement.placement == Placement::file ? read_places(parameters.placement.file) : random_places(parameters));
-          set(prm, "Capsule", "Placement", "list");
-          set(prm, "Capsule", "Centres", centres);
-          set(prm, "Capsule", "Rotations", rotations);
+          const auto places = random_places({first.seed, first.least_gap, std::max(first.least_gap, face_gap)}, kinds, box);
+          for (std::size_t k = 0; k < kinds.size(); ++k)
+            if (parameters.kinds[k].placement.placement == Placement::random)
+              set_places(prm, parameters.kinds[k].section, places[k]);
         }
       catch (const InputError &error)
         {
-          throw InputError(source.locate(error.what()));
+          throw InputError(source.locate(wanted_by + error.what()));
         }
     }
   } // namespace
@@ -170,14 +207,19 @@ namespace tanktread
     prm.leave_subsection();
   }
 
+  Parameters::Parameters(const std::size_t n_kinds)
+  {
+    for (unsigned int k = 0; k < n_kinds; ++k)
+      kinds.emplace_back(k);
+  }
+
   void
   Parameters::add_parameters(dealii::ParameterHandler &prm)
   {
     accuracy.add_parameters(prm);
     scene.add_parameters(prm);
-    capsule.add_parameters(prm);
-    placement.add_parameters(prm);
-    shell.add_parameters(prm);
+    for (KindParameters &kind : kinds)
+      kind.add_parameters(prm);
     shell_mesh.add_parameters(prm);
     fluid_mesh.add_parameters(prm);
     time.add_parameters(prm);
@@ -187,10 +229,9 @@ namespace tanktread
   }
 
   void
-  Parameters::check(const ParameterSource &source) const
+  Parameters::check(const ParameterSource &source, std::string errors) const
   {
-    std::string errors;
-    const auto  collect = [&](const auto &check) {
+    const auto collect = [&](const auto &check) {
       try
         {
           check();
@@ -202,11 +243,9 @@ namespace tanktread
     };
     collect([&] { accuracy.check(); });
     collect([&] { scene.check(); });
-    collect([&] { capsule.check(); });
-    collect([&] { placement.check(); });
-    collect([&] { check_mesh_file(capsule); });
-    collect([&] { shell.check(); });
-    collect([&] { check_shell_mesh(shell_mesh, shell); });
+    for (const KindParameters &kind : kinds)
+      collect([&] { kind.check(); });
+    collect([&] { check_shell_mesh(*this); });
     collect([&] { check_solver(scene, solver); });
     collect([&] { fluid_mesh.check(scene.box()); });
     collect([&] { output.check(); });
@@ -227,6 +266,9 @@ namespace tanktread
   bool
   Parameters::control_mesh_stays_even() const
   {
+    const auto has_such_forces = [this](const KindParameters &kind) {
+      return kind.shell.place_is_free() && kind.shell.form == BendingForm::moment_only && moduli(kind).bending_modulus > 0.;
+    };
     switch (shell_mesh.even)
       {
         case EvenControlMesh::always:
@@ -236,25 +278,59 @@ namespace tanktread
         case EvenControlMesh::automatic:
           break;
       }
-    return shell.place_is_free() && shell.form == BendingForm::moment_only && scene.bending_modulus() > 0.;
+    return std::any_of(kinds.begin(), kinds.end(), has_such_forces);
+  }
+
+  ShellModuli
+  Parameters::moduli(const KindParameters &kind) const
+  {
+    return {scene.surface_young_modulus() * kind.young_modulus_factor, scene.bending_modulus() * kind.bending_modulus_factor};
+  }
+
+  std::size_t
+  Parameters::n_capsules() const
+  {
+    std::size_t result = 0;
+    for (const KindParameters &kind : kinds)
+      result += kind.placement.centres.size();
+    return result;
+  }
+
+  bool
+  Parameters::bends() const
+  {
+    return std::any_of(kinds.begin(), kinds.end(), [this](const KindParameters &kind) { return moduli(kind).bending_modulus > 0.; });
+  }
+
+  bool
+  Parameters::has_mesh_file() const
+  {
+    return std::any_of(kinds.begin(), kinds.end(), [](const KindParameters &kind) { return kind.shape.shape == Shape::file; });
   }
 
   Parameters
   read_parameters(const std::string &file, const std::vector<std::string> &overrides)
   {
-    Parameters               parameters;
+    const std::string        text = text_of_parameter_file(file);
+    Parameters               parameters(number_of_kinds(text, file, overrides));
     dealii::ParameterHandler prm;
     parameters.add_parameters(prm);
-    const ParameterSource source = read_parameter_file(prm, file, overrides);
-    parameters.file              = file;
+    ParameterSource source = read_parameter_text(prm, text, file, overrides);
+    inherit_from_first_kind(prm, parameters.kinds.size(), source);
+    parameters.file = file;
     complete_file_names(prm, parameters);
-    if (scene_is_sound(parameters)) // otherwise check() says what is wrong with it
+    const std::string unreadable = read_mesh_files(parameters.kinds, source);
+    const bool        is_sound   = unreadable.empty() && scene_is_sound(parameters);
+    if (is_sound) // otherwise check() says what is wrong with it
       parameters.choices = accuracy_choices(parameters, source);
     for (const Choice &choice : parameters.choices)
       set(prm, choice.section, choice.name, choice.value);
-    if (scene_is_sound(parameters))
-      place_capsules(prm, parameters, source);
-    parameters.check(source);
+    if (is_sound && scene_is_sound(parameters))
+      {
+        read_places_files(prm, parameters, source);
+        choose_random_places(prm, parameters, source);
+      }
+    parameters.check(source, unreadable);
     parameters.used = parameters_as_prm(prm);
     return parameters;
   }
@@ -262,12 +338,15 @@ namespace tanktread
   Parameters
   with_settings(const Parameters &parameters, const std::vector<std::string> &settings)
   {
-    Parameters               result;
+    Parameters               result(parameters.kinds.size());
     dealii::ParameterHandler prm;
     result.add_parameters(prm);
     const ParameterSource source = read_parameter_text(prm, parameters.used, parameters.file, settings);
     result.file                  = parameters.file;
     result.choices               = parameters.choices;
+    for (std::size_t k = 0; k < result.kinds.size(); ++k)
+      if (result.kinds[k].shape.file == parameters.kinds[k].shape.file)
+        result.kinds[k].shape.mesh = parameters.kinds[k].shape.mesh;
     result.check(source);
     result.used = parameters_as_prm(prm);
     return result;

@@ -53,18 +53,17 @@ namespace tanktread
     using dealii::Patterns::FileName;
     using dealii::Patterns::Integer;
     using dealii::Patterns::List;
-    prm.enter_subsection("Capsule");
     add_enum_parameter(
       prm,
       "Placement",
       placement,
       {{"list", Placement::list}, {"file", Placement::file}, {"random", Placement::random}},
-      "Where capsules start, all of one kind. list: Centres and Rotations. file: Places file. random: as many as Number or Volume fraction say, without overlap; the same with the "
-      "same Seed. used_parameters.prm has the places that came of it as a list.");
+      "Where capsules of this kind start. list: Centres and Rotations. file: Places file. random: as many as Number or Volume fraction say, without overlap; the same with the "
+      "same Seed of section Capsule. used_parameters.prm has the places that came of it as a list.");
     prm.add_parameter("Centres",
                       centres,
                       "Centres of the capsules, in a: x, y, z of the first; x, y, z of the second; and so on. Along periodic axes they may lie anywhere.",
-                      List(List(Double(), 3, 3, ","), 1, 1000000, ";"));
+                      List(List(Double(), 3, 3, ","), 0, 1000000, ";"));
     prm.add_parameter(
       "Rotations",
       rotations,
@@ -76,13 +75,14 @@ namespace tanktread
     prm.add_parameter("Seed", seed, "What the random places begin with: another number, other places.", Integer(0));
     prm.add_parameter("Random orientations", turned, "Whether capsules placed at random are turned at random too.");
     prm.add_parameter("Least gap", least_gap, "Between capsules placed at random, and to walls, in a.", Double(0., 10.));
-    prm.leave_subsection();
   }
 
 
   void
   PlacementParameters::check() const
   {
+    if (placement == Placement::list && centres.empty())
+      throw InputError("Capsule/Centres: got none; allowed: that of one capsule of this kind at least.");
     if (placement == Placement::list && !rotations.empty() && rotations.size() != centres.size())
       throw InputError("Capsule/Rotations: got " + std::to_string(rotations.size()) + " of them; allowed: none, or one for each of the " +
                        std::to_string(centres.size()) + " Capsule/Centres.");
@@ -109,9 +109,10 @@ namespace tanktread
 
 
   unsigned int
-  PlacementParameters::number_in(const double volume) const
+  PlacementParameters::number_in(const double volume, const double size) const
   {
-    return number > 0 ? number : std::max(1u, static_cast<unsigned int>(std::lround(volume_fraction * volume / (4. / 3. * M_PI))));
+    const double of_one = 4. / 3. * M_PI * size * size * size;
+    return number > 0 ? number : std::max(1u, static_cast<unsigned int>(std::lround(volume_fraction * volume / of_one)));
   }
 
 

@@ -88,18 +88,26 @@ namespace tanktread
       bool          is_sphere; // whose gaps need no points
     };
 
-    /** Capsules that have reached a part of their size. */
+    /** Capsules that have reached a part of their size, and fixed ones of full size. */
     class Suspension
     {
     public:
-      Suspension(const RandomPlacement &wanted, const Cloud &cloud, const Box &box)
+      Suspension(const RandomPlacement &wanted, const std::vector<KindInPlace> &kinds, const Box &box)
         : wanted_(wanted)
-        , cloud_(cloud)
+        , kinds_(kinds)
         , box_(box)
         , chance_(wanted.seed)
         , step_(*std::min_element(box.side.begin(), box.side.end()) / 2.)
       {
-        const double reach = 2. * cloud_.radius + wanted_.least_gap;
+        for (unsigned int k = 0; k < kinds.size(); ++k)
+          {
+            clouds_.emplace_back(kinds[k].shape);
+            largest_radius_ = std::max(largest_radius_, clouds_[k].radius);
+            for (const Place &place : kinds[k].fixed)
+              capsules_.push_back({place, k});
+          }
+        n_fixed_           = capsules_.size();
+        const double reach = 2. * largest_radius_ + wanted_.least_gap;
         int          n[3];
         for (unsigned int d = 0; d < 3; ++d)
           n[d] = box_.is_periodic(d) && box_.side[d] < 2. * reach ? 1 : 0; // more than the nearest image
@@ -109,25 +117,38 @@ namespace tanktread
               images_.emplace_back(i * box_.side[0], j * box_.side[1], k * box_.side[2]);
       }
 
+      /** Whether all capsules and the gaps around them would be too much for the box; known of spheres. */
+      bool
+      is_full() const
+      {
+        double volume = 0.;
+        for (unsigned int k = 0; k < kinds_.size(); ++k)
+          if (clouds_[k].is_sphere)
+            volume += (kinds_[k].number + kinds_[k].fixed.size()) * std::pow(2. * clouds_[k].radius + wanted_.least_gap, 3) * M_PI / 6.;
+        return volume > densest * box_.volume();
+      }
+
       /** Small capsules, one after the other. Returns whether there was room for all. */
       bool
       begin()
       {
-        for (unsigned int c = 0; c < wanted_.number; ++c)
-          {
-            bool found = false;
-            for (unsigned int trial = 0; trial < n_trials && !found; ++trial)
-              {
-                const Eigen::RowVector3d unit = chance_.in_cube(0.5);
-                Place                    place({unit[0] * box_.side[0], unit[1] * box_.side[1], unit[2] * box_.side[2]},
-                            wanted_.turned ? chance_.turn() : Eigen::Matrix3d::Identity());
-                found = gap(place, c) >= wanted_.least_gap;
-                if (found)
-                  places_.push_back(std::move(place));
-              }
-            if (!found)
-              return false;
-          }
+        for (unsigned int k = 0; k < kinds_.size(); ++k)
+          for (unsigned int n = 0; n < kinds_[k].number; ++n)
+            {
+              bool found = false;
+              for (unsigned int trial = 0; trial < n_trials && !found; ++trial)
+                {
+                  const Eigen::RowVector3d unit = chance_.in_cube(0.5);
+                  Place                    place({unit[0] * box_.side[0], unit[1] * box_.side[1], unit[2] * box_.side[2]},
+                              kinds_[k].turned ? chance_.turn() : Eigen::Matrix3d::Identity());
+                  capsules_.push_back({std::move(place), k});
+                  found = gap(capsules_.back(), capsules_.size() - 1) >= wanted_.least_gap;
+                  if (!found)
+                    capsules_.pop_back();
+                }
+              if (!found)
+                return false;
+            }
         return true;
       }
 
@@ -136,22 +157,24 @@ namespace tanktread
       move_all()
       {
         unsigned int n_moved = 0;
-        for (unsigned int c = 0; c < places_.size(); ++c)
+        for (std::size_t c = n_fixed_; c < capsules_.size(); ++c)
           {
-            Place place = places_[c];
+            PlacedCapsule moved = capsules_[c];
+            Place        &place = moved.place;
             place.centre += chance_.in_cube(step_);
             for (unsigned int d = 0; d < 3; ++d)
               if (box_.is_periodic(d))
                 place.centre[d] -= box_.side[d] * std::floor(place.centre[d] / box_.side[d] + 0.5);
-            if (wanted_.turned)
-              place.turn = Eigen::AngleAxisd(std::min(step_ / cloud_.radius, 1.) * chance_.number(), chance_.direction()).toRotationMatrix() * place.turn;
-            if (gap(place, c) >= wanted_.least_gap)
+            if (kinds_[moved.kind].turned)
+              place.turn =
+                Eigen::AngleAxisd(std::min(step_ / clouds_[moved.kind].radius, 1.) * chance_.number(), chance_.direction()).toRotationMatrix() * place.turn;
+            if (gap(moved, c) >= wanted_.least_gap)
               {
-                places_[c] = place;
+                capsules_[c] = moved;
                 ++n_moved;
               }
           }
-        step_ *= 2 * n_moved > places_.size() ? 1.1 : 0.9;
+        step_ *= 2 * n_moved > capsules_.size() - n_fixed_ ? 1.1 : 0.9;
         step_ = std::min(step_, *std::max_element(box_.side.begin(), box_.side.end()) / 2.);
       }
 
@@ -160,9 +183,9 @@ namespace tanktread
       grow()
       {
         double smallest = std::numeric_limits<double>::infinity();
-        for (unsigned int c = 0; c < places_.size(); ++c)
-          smallest = std::min(smallest, gap(places_[c], c));
-        const double growth = std::min(1. - size_, (smallest - wanted_.least_gap) / (2. * cloud_.radius));
+        for (std::size_t c = n_fixed_; c < capsules_.size(); ++c)
+          smallest = std::min(smallest, gap(capsules_[c], c));
+        const double growth = std::min(1. - size_, (smallest - wanted_.least_gap) / (2. * largest_radius_));
         size_ += std::max(growth, 0.);
         return growth;
       }
@@ -173,73 +196,98 @@ namespace tanktread
         return size_;
       }
 
-      const std::vector<Place> &
+      /** The random places of each kind. */
+      std::vector<std::vector<Place>>
       places() const
       {
-        return places_;
+        std::vector<std::vector<Place>> result(kinds_.size());
+        for (std::size_t c = n_fixed_; c < capsules_.size(); ++c)
+          result[capsules_[c].kind].push_back(capsules_[c].place);
+        return result;
       }
 
     private:
+      struct PlacedCapsule
+      {
+        Place        place;
+        unsigned int kind;
+      };
+
+      /** A capsule as it is now. */
+      struct Body
+      {
+        const Cloud           &cloud;
+        const Eigen::Matrix3d &turn;
+        double                 size;
+      };
+
+      Body
+      body(const PlacedCapsule &capsule, const std::size_t c) const
+      {
+        return {clouds_[capsule.kind], capsule.place.turn, c < n_fixed_ ? 1. : size_};
+      }
+
       /** Signed distance of the points of a capsule from the tangent planes at the nearest points of the other; `apart`: from the first's centre to the second's. */
       double
-      gap_of_clouds(const Place &first, const Place &second, const Eigen::RowVector3d &apart, const double reach) const
+      gap_of_clouds(const Body &first, const Body &second, const Eigen::RowVector3d &apart, const double reach) const
       {
         double                   result   = reach;
         const Eigen::Matrix3d    relative = second.turn.transpose() * first.turn;
         const Eigen::RowVector3d shift    = -apart * second.turn; // the first's centre in the second's frame
-        for (Eigen::Index i = 0; i < cloud_.points.rows(); ++i)
+        for (Eigen::Index i = 0; i < first.cloud.points.rows(); ++i)
           {
-            const Eigen::RowVector3d p = size_ * (cloud_.points.row(i) * relative.transpose()) + shift;
-            if (p.norm() > size_ * cloud_.radius + result)
+            const Eigen::RowVector3d p = first.size * (first.cloud.points.row(i) * relative.transpose()) + shift;
+            if (p.norm() > second.size * second.cloud.radius + result)
               continue;
             Eigen::Index nearest;
-            const double distance = std::sqrt((size_ * cloud_.points).rowwise().operator-(p).rowwise().squaredNorm().minCoeff(&nearest));
-            const double above    = (p - size_ * cloud_.points.row(nearest)).dot(cloud_.normals.row(nearest));
+            const double distance = std::sqrt((second.size * second.cloud.points).rowwise().operator-(p).rowwise().squaredNorm().minCoeff(&nearest));
+            const double above    = (p - second.size * second.cloud.points.row(nearest)).dot(second.cloud.normals.row(nearest));
             result                = std::min(result, above < 0. ? std::max(above, -distance) : above);
           }
         return result;
       }
 
       double
-      gap_of_pair(const Place &first, const Place &second, const Eigen::RowVector3d &apart) const
+      gap_of_pair(const Body &first, const Body &second, const Eigen::RowVector3d &apart) const
       {
-        const double between = apart.norm() - 2. * size_ * cloud_.radius;
-        if (cloud_.is_sphere || between >= wanted_.least_gap)
+        const double radii = first.size * first.cloud.radius + second.size * second.cloud.radius, between = apart.norm() - radii;
+        if ((first.cloud.is_sphere && second.cloud.is_sphere) || between >= wanted_.least_gap)
           return between;
-        const double reach = wanted_.least_gap + size_ * cloud_.radius; // beyond it gaps only bound the growth of one round
+        const double reach = wanted_.least_gap + 0.5 * radii; // beyond it gaps only bound the growth of one round
         return std::min(gap_of_clouds(first, second, apart, reach), gap_of_clouds(second, first, -apart, reach));
       }
 
       /** What is left of the gap to faces, and the least gap between capsules. */
       double
-      gap_to_faces(const Place &place) const
+      gap_to_faces(const Body &body, const Eigen::RowVector3d &centre) const
       {
         double result = std::numeric_limits<double>::infinity();
         for (unsigned int d = 0; d < 3; ++d)
           if (!box_.is_periodic(d))
             {
-              const double extent = cloud_.is_sphere ? cloud_.radius : (cloud_.points * place.turn.row(d).transpose()).cwiseAbs().maxCoeff();
-              result              = std::min(result, 0.5 * box_.side[d] - std::abs(place.centre[d]) - size_ * extent - wanted_.face_gap + wanted_.least_gap);
+              const double extent = body.cloud.is_sphere ? body.cloud.radius : (body.cloud.points * body.turn.row(d).transpose()).cwiseAbs().maxCoeff();
+              result              = std::min(result, 0.5 * box_.side[d] - std::abs(centre[d]) - body.size * extent - wanted_.face_gap + wanted_.least_gap);
             }
         return result;
       }
 
-      /** Smallest gap of capsule c at `place` to all others, all images and the faces; ends early with one that is not allowed. */
+      /** Smallest gap of `capsule`, number c, to all others, all images and the faces; ends early with one that is not allowed. */
       double
-      gap(const Place &place, const unsigned int c) const
+      gap(const PlacedCapsule &capsule, const std::size_t c) const
       {
-        double result = gap_to_faces(place);
-        for (unsigned int other = 0; other < places_.size() + (c == places_.size() ? 1 : 0); ++other)
+        const Body body   = this->body(capsule, c);
+        double     result = gap_to_faces(body, capsule.place.centre);
+        for (std::size_t other = 0; other < capsules_.size(); ++other)
           {
-            const Place       &neighbour = other == c ? place : places_[other];
-            Eigen::RowVector3d apart     = neighbour.centre - place.centre;
+            const PlacedCapsule &neighbour = other == c ? capsule : capsules_[other];
+            Eigen::RowVector3d   apart     = neighbour.place.centre - capsule.place.centre;
             for (unsigned int d = 0; d < 3; ++d)
               if (box_.is_periodic(d))
                 apart[d] -= box_.side[d] * std::floor(apart[d] / box_.side[d] + 0.5);
             for (const Eigen::RowVector3d &image : images_)
               {
                 if (other != c || !image.isZero())
-                  result = std::min(result, gap_of_pair(place, neighbour, apart + image));
+                  result = std::min(result, gap_of_pair(body, this->body(neighbour, other), apart + image));
                 if (result < wanted_.least_gap)
                   return result;
               }
@@ -248,24 +296,26 @@ namespace tanktread
       }
 
       const RandomPlacement          &wanted_;
-      const Cloud                    &cloud_;
+      const std::vector<KindInPlace> &kinds_;
       const Box                      &box_;
       Chance                          chance_;
-      std::vector<Eigen::RowVector3d> images_; // shifts beyond the nearest image
-      std::vector<Place>              places_;
-      double                          size_ = first_size, step_;
+      std::vector<Cloud>              clouds_; // of the kinds
+      double                          largest_radius_ = 0.;
+      std::vector<Eigen::RowVector3d> images_;   // shifts beyond the nearest image
+      std::vector<PlacedCapsule>      capsules_; // the fixed ones first
+      std::size_t                     n_fixed_ = 0;
+      double                          size_    = first_size, step_;
     };
   } // namespace
 
 
-  std::vector<Place>
-  random_places(const RandomPlacement &wanted, const FittedShape &shape, const Box &box)
+  std::vector<std::vector<Place>>
+  random_places(const RandomPlacement &wanted, const std::vector<KindInPlace> &kinds, const Box &box)
   {
-    const Cloud cloud(shape);
-    Suspension  suspension(wanted, cloud, box);
-    const bool  is_full = cloud.is_sphere && wanted.number * std::pow(2. + wanted.least_gap, 3) * M_PI / 6. > densest * box.volume();
-    bool        fits    = !is_full && suspension.begin();
-    double      before  = suspension.size(); // some rounds ago
+    Suspension suspension(wanted, kinds, box);
+    const bool is_full = suspension.is_full();
+    bool       fits    = !is_full && suspension.begin();
+    double     before  = suspension.size(); // some rounds ago
     for (unsigned int round = 1, left = last_rounds; fits && left > 0; ++round)
       {
         suspension.move_all();
@@ -281,7 +331,10 @@ namespace tanktread
     if (!fits)
       {
         std::ostringstream message;
-        message << wanted.number << " capsules with gaps of " << wanted.least_gap << " a find no room in the box";
+        unsigned int       number = 0;
+        for (const KindInPlace &kind : kinds)
+          number += kind.number;
+        message << number << " capsules with gaps of " << wanted.least_gap << " a find no room in the box";
         if (!is_full)
           message << ": they came to " << suspension.size() << " of their size";
         message << "; allowed: fewer, a smaller gap or a larger box.";

@@ -50,10 +50,15 @@ namespace tanktread
         context_.initial_triangle = std::min(context_.initial_triangle, worst_triangle(kind.topology().faces, kind.initial()));
         context_.control_points   = std::min(context_.control_points, kind.n_control_points());
       }
-    const FluidMesh &mesh    = scene.fluid().mesh();
-    context_.finest_cell     = mesh.cell_size(mesh.finest_level());
-    context_.bends           = parameters.scene.bending_modulus() > 0. || parameters.shell.thickness > 0.;
-    context_.moments_alone   = context_.bends && parameters.shell.form == BendingForm::moment_only && !parameters.control_mesh_stays_even();
+    const FluidMesh &mesh = scene.fluid().mesh();
+    context_.finest_cell  = mesh.cell_size(mesh.finest_level());
+    context_.bends        = false;
+    for (const KindParameters &kind : parameters.kinds)
+      {
+        const bool bends       = parameters.moduli(kind).bending_modulus > 0. || kind.shell.thickness > 0.;
+        context_.bends         = context_.bends || bends;
+        context_.moments_alone = context_.moments_alone || (bends && kind.shell.form == BendingForm::moment_only && !parameters.control_mesh_stays_even());
+      }
     context_.is_explicit     = parameters.solver.coupling == TimeCoupling::explicit_euler;
     context_.order           = order(parameters.time.scheme);
     context_.step            = parameters.time.step;
@@ -82,9 +87,9 @@ namespace tanktread
   ResolutionMonitor::check(const State &state, const StepObservables &step, const std::vector<CapsuleObservables> &capsules)
   {
     const Timings::Scope scope(scene_.timings(), "- resolution");
-    context_.finest_cell           = scene_.level().finest_cell(); // which may follow films
-    ConcernFigures       figures   = unknown_figures();
-    double               left_over = 0., of_shells = 0.;
+    context_.finest_cell     = scene_.level().finest_cell(); // which may follow films
+    ConcernFigures figures   = unknown_figures();
+    double         left_over = 0., of_shells = 0.;
     for (const CapsuleObservables &o : capsules)
       {
         of(figures, Concern::triangle)      = std::fmin(of(figures, Concern::triangle), o.shape.worst_triangle);

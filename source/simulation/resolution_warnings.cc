@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: when a run has to say that its meshes or steps do not resolve what it computes.
 
+#include <tanktread/base/number_text.h>
 #include <tanktread/simulation/resolution_warnings.h>
 
 #include <algorithm>
@@ -60,10 +61,7 @@ namespace tanktread
     std::string
     number(const double value)
     {
-      std::ostringstream text;
-      text.precision(3);
-      text << value;
-      return text.str();
+      return number_text(value, 3);
     }
 
     std::string

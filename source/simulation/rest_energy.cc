@@ -14,10 +14,7 @@ namespace tanktread
     bool
     is_known(const SceneDescription &scene)
     {
-      // The moments alone are not the derivative of an energy.
-      const bool has_energy = std::all_of(scene.kinds.begin(), scene.kinds.end(), [](const CapsuleKind &kind) {
-        return kind.shell.form == BendingForm::variational || kind.moduli.bending_modulus == 0.;
-      });
+      const bool has_energy = std::all_of(scene.kinds.begin(), scene.kinds.end(), [](const CapsuleKind &kind) { return kind.has_energy(); });
       return scene.liquids.flow.amplitude.is_zero() && scene.liquids.reynolds_number == 0. && has_energy;
     }
 

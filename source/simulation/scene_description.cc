@@ -26,15 +26,25 @@ namespace tanktread
       result.liquids.viscosity_ratio = parameters.scene.viscosity_ratio;
       result.liquids.reynolds_number = parameters.scene.reynolds_number;
       result.liquids.unbounded       = parameters.scene.boundary == Boundary::unbounded;
-      CapsuleKind &kind              = result.kinds[0];
-      kind.shape                     = make_capsule(parameters.capsule, std::min(parameters.shell_mesh.level, max_level));
-      kind.stress_free               = make_stress_free_shape(parameters.capsule, kind.shape);
-      result.places                  = parameters.placement.places();
-      kind.shell                     = parameters.shell;
-      kind.moduli                    = {parameters.scene.surface_young_modulus(), parameters.scene.bending_modulus()};
-      kind.shell_quadrature          = parameters.shell_mesh.quadrature;
       result.fluid_mesh              = parameters.fluid_mesh;
       result.solver                  = parameters.solver;
+      result.kinds.clear();
+      result.places.clear();
+      for (const KindParameters &of_kind : parameters.kinds)
+        {
+          CapsuleKind kind;
+          kind.shape            = make_capsule(of_kind.shape, std::min(parameters.shell_mesh.level, max_level));
+          kind.stress_free      = make_stress_free_shape(of_kind.shape, kind.shape);
+          kind.shell            = of_kind.shell;
+          kind.moduli           = parameters.moduli(of_kind);
+          kind.shell_quadrature = parameters.shell_mesh.quadrature;
+          for (Place &place : of_kind.placement.places())
+            {
+              result.places.push_back(std::move(place));
+              result.kind_of.push_back(result.kinds.size());
+            }
+          result.kinds.push_back(std::move(kind));
+        }
       return result;
     }
 
@@ -63,8 +73,9 @@ namespace tanktread
     }
 
 
+    /** @param sections of the kinds. */
     void
-    check_places(const SceneDescription &scene, const double h)
+    check_places(const SceneDescription &scene, const std::vector<std::string> &sections, const double h)
     {
       const CapsuleQuadrature                     rule{triangle_quadrature(3), triangle_quadrature(12), Derivatives::second};
       std::vector<std::unique_ptr<const Capsule>> kinds;
@@ -74,7 +85,7 @@ namespace tanktread
         kinds.push_back(std::make_unique<Capsule>(kind.shape, rule, kind.shell, kind.moduli, kind.stress_free));
       for (unsigned int c = 0; c < scene.places.size(); ++c)
         {
-          const Capsule &capsule = *kinds[scene.kind_of.empty() ? 0 : scene.kind_of[c]];
+          const Capsule &capsule = *kinds[scene.kind_of[c]];
           shells.push_back(std::make_shared<ShellConfiguration>(capsule, placed(capsule.initial(), scene.places[c])));
         }
       for (unsigned int d = 0; d < 3; ++d)
@@ -97,8 +108,8 @@ namespace tanktread
         }
       if (const ShellGap smallest = smallest_gap(shells, periods, 4. * h); smallest.gap <= 0.)
         {
-          message << "Capsule/Centres: capsules " << smallest.first + 1 << " and " << smallest.second + 1 << " overlap by " << std::abs(smallest.gap)
-                  << " a; allowed: capsules that do not touch, periodic images included.";
+          message << sections[scene.kind_of[std::max(smallest.first, smallest.second)]] << "/Centres: capsules " << smallest.first + 1 << " and "
+                  << smallest.second + 1 << " overlap by " << std::abs(smallest.gap) << " a; allowed: capsules that do not touch, periodic images included.";
           throw InputError(message.str());
         }
     }
@@ -117,14 +128,10 @@ namespace tanktread
   {
     // A coarse control mesh has the shape to a hundredth of a per cent.
     const SceneDescription scene = description(parameters, 3);
-    if (scene.places.size() > 1 && parameters.scene.viscosity_ratio != 1. && scene.liquids.unbounded)
-      {
-        std::ostringstream message;
-        message << "Scene/Viscosity ratio is " << parameters.scene.viscosity_ratio << "; allowed with " << scene.places.size()
-                << " capsules and Scene/Boundary = unbounded in this version: 1";
-        throw InputError(message.str());
-      }
     check_extent(scene, parameters.fluid_mesh.finest_cell);
-    check_places(scene, parameters.fluid_mesh.finest_cell);
+    std::vector<std::string> sections;
+    for (const KindParameters &kind : parameters.kinds)
+      sections.push_back(kind.section);
+    check_places(scene, sections, parameters.fluid_mesh.finest_cell);
   }
 } // namespace tanktread

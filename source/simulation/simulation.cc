@@ -6,6 +6,7 @@
 
 #include <tanktread/base/exceptions.h>
 #include <tanktread/base/mpi_errors.h>
+#include <tanktread/base/number_text.h>
 #include <tanktread/base/output_file.h>
 #include <tanktread/base/output_folder.h>
 #include <tanktread/simulation/scene_description.h>
@@ -22,12 +23,22 @@ namespace tanktread
 {
   namespace
   {
+    /** Which capsules are of which kind; empty if all are of one. */
     std::string
-    number(const double value)
+    kinds_text(const Parameters &parameters)
     {
-      std::ostringstream text;
-      text << value;
-      return text.str();
+      std::string text;
+      std::size_t last = 0;
+      for (const KindParameters &kind : parameters.kinds)
+        {
+          const std::size_t first = last + 1, n = kind.placement.centres.size();
+          last += n;
+          text += (text.empty() ? "" : "; ") + (n == 1 ? std::to_string(first) : std::to_string(first) + " to " + std::to_string(last)) + ": " + kind.section;
+          if (!kind.is_first())
+            text += ", size " + number_text(kind.shape.size) + " a, E h times " + number_text(kind.young_modulus_factor) + ", kappa_B times " +
+              number_text(kind.bending_modulus_factor);
+        }
+      return parameters.kinds.size() > 1 ? text : "";
     }
 
 
@@ -43,39 +54,43 @@ namespace tanktread
       run.khat           = parameters.scene.bending_modulus() / parameters.scene.surface_young_modulus();
       const Box box      = parameters.scene.box();
       for (unsigned int d = 0; d < 3; ++d)
-        run.box += (d == 0 ? "" : " x ") + number(box.side[d]) + (box.is_periodic(d) ? " periodic" : "");
+        run.box += (d == 0 ? "" : " x ") + number_text(box.side[d]) + (box.is_periodic(d) ? " periodic" : "");
       if (parameters.scene.boundary == Boundary::unbounded)
         {
           run.box += " in unbounded liquid";
           run.included.push_back("the unbounded liquid beyond the box (Boundary unbounded: its flow of the shells' forces holds on all faces)");
           run.left_out.push_back("means over the box in suspension.csv (unbounded liquid has no volume: nan)");
         }
-      run.n_capsules = parameters.placement.centres.size();
+      run.n_capsules = parameters.n_capsules();
+      run.kinds      = kinds_text(parameters);
       run.Re         = parameters.scene.reynolds_number;
       if (run.Re == 0.)
         run.left_out.push_back("inertia (Re = 0)");
       if (parameters.scene.viscosity_ratio == 1.)
         run.left_out.push_back("variable viscosity (ratio 1: Laplace form, each velocity component by itself)");
       else
-        run.included.push_back("variable viscosity (ratio " + number(parameters.scene.viscosity_ratio) +
+        run.included.push_back("variable viscosity (ratio " + number_text(parameters.scene.viscosity_ratio) +
                                ": strain form, cells that the shell cuts integrated part by part)");
       if (parameters.solver.method == StokesMethod::assembled)
         run.included.push_back("assembled matrices and algebraic multigrid (Method assembled), in place of matrix-free operators and geometric multigrid");
-      if (parameters.capsule.prestress != 0.)
-        run.included.push_back("prestress (inflation by " + number(parameters.capsule.prestress) + ")");
-      if (parameters.capsule.stress_free != StressFreeShape::initial)
+      const auto any = [&parameters](const auto &condition) { return std::any_of(parameters.kinds.begin(), parameters.kinds.end(), condition); };
+      for (const KindParameters &kind : parameters.kinds)
+        if (kind.shape.prestress != 0.)
+          run.included.push_back("prestress (inflation by " + number_text(kind.shape.prestress) + (kind.is_first() ? ")" : ", " + kind.section + ")"));
+      if (any([](const KindParameters &kind) { return kind.shape.stress_free != StressFreeShape::initial; }))
         run.included.push_back("a stress-free shape other than the initial one");
-      if (parameters.shell.thickness == 0.)
+      const bool is_thin = !any([](const KindParameters &kind) { return kind.shell.thickness > 0.; });
+      if (is_thin)
         run.left_out.push_back("shell thickness (0)");
       if (parameters.solver.interface == Interface::plain)
         run.left_out.push_back("the kink of the velocity and the jump of the pressure inside the cells that the shell cuts (Interface plain)");
       if (parameters.control_mesh_stays_even())
         run.included.push_back("control points that move along the shell to stay evenly spread (Even control mesh), not with the material; steps of at most " +
-                               number(PointsAlong::longest_step_factor) + " mu a^2 R / kappa_B, R the smallest radius of curvature");
-      if (parameters.shell.law == MembraneLaw::none)
+                               number_text(PointsAlong::longest_step_factor) + " mu a^2 R / kappa_B, R the smallest radius of curvature");
+      if (!any([](const KindParameters &kind) { return kind.shell.law != MembraneLaw::none; }))
         run.left_out.push_back("the membrane: the shell bends only (Membrane law none)");
-      if (parameters.scene.bending_modulus() == 0.)
-        run.left_out.push_back(parameters.shell.thickness == 0. ? "bending and second derivatives of the surface (khat = 0)" : "Helfrich bending (khat = 0)");
+      if (!parameters.bends())
+        run.left_out.push_back(is_thin ? "bending and second derivatives of the surface (khat = 0)" : "Helfrich bending (khat = 0)");
       return run;
     }
 
@@ -237,7 +252,7 @@ namespace tanktread
     while (result.beyond_mesh)
       {
         ends.push_back(*result.beyond_mesh);
-        log_.line("Step of length " + number(result.length) + " repeated on a mesh around its " + (ends.size() == 1 ? "end" : "stages and its end") +
+        log_.line("Step of length " + number_text(result.length) + " repeated on a mesh around its " + (ends.size() == 1 ? "end" : "stages and its end") +
                   " too: the shells have left the finest cells.");
         const unsigned int remeshing = refine_around_shells(ends);
         StepResult         again     = stepper_.step(state_, memory_.time, ends.size() == max_meshes);

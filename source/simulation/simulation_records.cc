@@ -15,17 +15,17 @@ namespace tanktread
   void
   Simulation::remember(std::vector<CapsuleObservables> &capsules)
   {
-    // The moments alone are not the derivative of an energy; control points that move along the shell do discrete work of their own.
-    const bool has_energy =
-      (parameters_.shell.form == BendingForm::variational || parameters_.scene.bending_modulus() == 0.) && !parameters_.control_mesh_stays_even();
+    // Control points that move along the shell do discrete work of their own.
+    const bool points_stay = !parameters_.control_mesh_stays_even();
     for (std::size_t c = 0; c < capsules.size(); ++c)
       {
         CapsuleObservables  &o = capsules[c];
         const ControlPoints &x = state_.capsules[c].x;
         if (memory_.capsules.size() == c)
           memory_.capsules.push_back({PhaseAngles(scene_.capsule(c).topology(), x, o.ellipsoid, o.theta_over_pi), {}, {}});
-        CapsuleMemory &memory = memory_.capsules[c];
-        memory.ellipsoid      = o.ellipsoid;
+        const bool     has_energy = points_stay && scene_.description().kind(scene_.layout().own()[c]).has_energy();
+        CapsuleMemory &memory     = memory_.capsules[c];
+        memory.ellipsoid          = o.ellipsoid;
         memory.phase.update(x, o.ellipsoid, o.theta_over_pi);
         o.alpha            = memory.phase.alpha();
         o.delta            = memory.phase.delta();

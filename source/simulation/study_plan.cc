@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: the runs of a study and what is learned from which of them.
 
+#include <tanktread/base/number_text.h>
 #include <tanktread/simulation/parameters.h>
 #include <tanktread/simulation/study_plan.h>
 
@@ -18,9 +19,7 @@ namespace tanktread
     std::string
     number(const double value)
     {
-      std::ostringstream text;
-      text << std::setprecision(15) << value;
-      return text.str();
+      return number_text(value, 15);
     }
 
     double

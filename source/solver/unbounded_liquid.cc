@@ -7,7 +7,6 @@
 #include <tanktread/surface/rigid_motion.h>
 
 #include <algorithm>
-#include <stdexcept>
 
 namespace tanktread
 {
@@ -84,74 +83,94 @@ namespace tanktread
   }
 
 
-  Eigen::Matrix3d
-  UnboundedLiquid::discrete_stresslet(const FluidBlockVector &fields, const Eigen::RowVector3d &centre)
+  std::vector<std::vector<ControlPoints>>
+  UnboundedLiquid::fields_of_team(const unsigned int team, const State &state, const ShellConfigurations &shells, const ShellFields &velocities) const
   {
-    uniform_.vmult(loads_, fields);
-    Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
-    for (std::size_t i = 0; i < near_.size(); ++i)
-      for (unsigned int c = 0; c < 3; ++c)
-        for (unsigned int d = 0; d < 3; ++d)
-          moment(c, d) += (near_places_[c][i] - centre[c]) * loads_.block(velocity_block).local_element(3 * near_[i] + d);
-    dealii::Utilities::MPI::sum(dealii::ArrayView<const double>(moment.data(), 9), space_.mesh.communicator(), dealii::ArrayView<double>(moment.data(), 9));
-    return symmetric_without_trace(-moment);
+    const bool                              has_contrast = viscosity_ratio_ != 1.;
+    std::vector<std::vector<ControlPoints>> result;
+    if (layout_.team_of_rank(layout_.rank()) == team)
+      for (std::size_t i = 0; i < shells.size(); ++i)
+        {
+          const CapsuleState  &capsule = state.capsules[i];
+          const ControlPoints &v       = shells[i]->volume_gradient();
+          result.push_back({capsule.x, capsule.force + capsule.pressure_jump * v});
+          if (has_contrast)
+            result.back().insert(result.back().end(), {without_rigid_motion(capsule.x, velocities[i]), v});
+        }
+    else
+      for (unsigned int c = 0; c < layout_.n_capsules(); ++c)
+        if (layout_.team_of(c) == team)
+          result.emplace_back(has_contrast ? 4 : 2, ControlPoints(layout_.capsules()[c].n_control_points(), 3));
+    for (std::vector<ControlPoints> &of_capsule : result)
+      for (ControlPoints &field : of_capsule)
+        if (layout_.n_teams() > 1)
+          MPI_Bcast(field.data(), int(field.size()), MPI_DOUBLE, int(layout_.leader(team)), layout_.communicator());
+    return result;
   }
 
 
-  void
-  UnboundedLiquid::add_other_viscosity(const State &state, const ShellConfiguration &shell, const ControlPoints &velocity, Columns &on_faces)
+  std::vector<UnboundedLiquid::Multipoles>
+  UnboundedLiquid::add_all_points(const State &state, const ShellConfigurations &shells, const ShellFields &velocities, Columns &on_faces) const
   {
-    const CapsuleState      &capsule = state.capsules[0];
-    const ControlPoints     &v       = shell.volume_gradient();
-    const ControlPoints      U       = without_rigid_motion(capsule.x, velocity);
-    const Eigen::RowVector3d centre  = capsule.x.colwise().mean();
-    const Columns           &places  = faces_.places();
-    add_double_layer(columns(capsule.x), columns(U), columns(v), 1. - viscosity_ratio_, places, on_faces);
-
-    const Eigen::Matrix3d of_points =
-      symmetric_without_trace(-(capsule.x.rowwise() - centre).transpose() * capsule.force - 2. * (1. - viscosity_ratio_) * U.transpose() * v);
-    const Eigen::Matrix3d missing = discrete_stresslet(state.fluid, centre) - of_points;
-    // As a double layer of its columns on the faces of a point: -3/(8 pi) y (y . S y)/|y|^5.
-    const ControlPoints columns_of_S = missing, unit_vectors = Eigen::Matrix3d::Identity();
-    add_double_layer(columns(centre.replicate(3, 1)), columns(columns_of_S), columns(unit_vectors), -0.5, places, on_faces);
-  }
-
-
-  void
-  UnboundedLiquid::add_all_stokeslets(const State &state, const ShellConfigurations &shells, Columns &on_faces) const
-  {
+    std::vector<Multipoles> result(layout_.n_capsules());
     for (unsigned int team = 0; team < layout_.n_teams(); ++team)
       {
-        std::vector<double> sources; // x and force of each control point, the three components of a shell one after the other
-        if (layout_.team_of_rank(layout_.rank()) == team)
-          for (std::size_t i = 0; i < shells.size(); ++i)
-            for (const ControlPoints &field :
-                 {state.capsules[i].x, ControlPoints(state.capsules[i].force + state.capsules[i].pressure_jump * shells[i]->volume_gradient())})
-              for (const std::vector<double> &column : columns(field))
-                sources.insert(sources.end(), column.begin(), column.end());
-        std::vector<unsigned int> of_team;
-        std::size_t               n = 0;
+        const std::vector<std::vector<ControlPoints>> fields = fields_of_team(team, state, shells, velocities);
+        auto                                          next   = fields.begin();
         for (unsigned int c = 0; c < layout_.n_capsules(); ++c)
-          if (layout_.team_of(c) == team)
-            {
-              of_team.push_back(c);
-              n += 6 * std::size_t(layout_.capsules()[c].n_control_points());
-            }
-        sources.resize(n);
-        if (layout_.n_teams() > 1)
-          MPI_Bcast(sources.data(), int(n), MPI_DOUBLE, int(layout_.leader(team)), layout_.communicator());
-        const double *next = sources.data();
-        for (const unsigned int c : of_team)
           {
-            Columns both[2];
-            for (Columns &field : both)
-              for (std::vector<double> &column : field)
-                {
-                  column.assign(next, next + layout_.capsules()[c].n_control_points());
-                  next += column.size();
-                }
-            add_stokeslets(both[0], both[1], faces_.places(), on_faces);
+            if (layout_.team_of(c) != team)
+              continue;
+            const std::vector<ControlPoints> &of_capsule = *next++;
+            const ControlPoints              &x = of_capsule[0], &force = of_capsule[1];
+            add_stokeslets(columns(x), columns(force), faces_.places(), on_faces);
+            if (viscosity_ratio_ == 1.)
+              continue;
+            const ControlPoints &U = of_capsule[2], &v = of_capsule[3];
+            add_double_layer(columns(x), columns(U), columns(v), 1. - viscosity_ratio_, faces_.places(), on_faces);
+            result[c].centre = x.colwise().mean();
+            result[c].force  = force.colwise().sum();
+            result[c].stresslet =
+              symmetric_without_trace(-(x.rowwise() - result[c].centre).transpose() * force - 2. * (1. - viscosity_ratio_) * U.transpose() * v);
           }
+      }
+    return result;
+  }
+
+
+  void
+  UnboundedLiquid::add_missing(const FluidBlockVector &fields, const std::vector<Multipoles> &of_points, Columns &on_faces)
+  {
+    uniform_.vmult(loads_, fields);
+    std::vector<double> sums(12 * of_points.size(), 0.); // of the nodes nearest to each capsule: moments and forces
+    for (std::size_t i = 0; i < near_.size(); ++i)
+      {
+        const Eigen::RowVector3d y(near_places_[0][i], near_places_[1][i], near_places_[2][i]);
+        std::size_t              nearest = 0;
+        for (std::size_t c = 1; c < of_points.size(); ++c)
+          if ((y - of_points[c].centre).squaredNorm() < (y - of_points[nearest].centre).squaredNorm())
+            nearest = c;
+        for (unsigned int d = 0; d < 3; ++d)
+          {
+            const double load = loads_.block(velocity_block).local_element(3 * near_[i] + d);
+            for (unsigned int c = 0; c < 3; ++c)
+              sums[12 * nearest + 3 * c + d] += (y[c] - of_points[nearest].centre[c]) * load;
+            sums[12 * nearest + 9 + d] += load;
+          }
+      }
+    dealii::Utilities::MPI::sum(sums, space_.mesh.communicator(), sums);
+    for (std::size_t c = 0; c < of_points.size(); ++c)
+      {
+        const Eigen::Matrix3d moment = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(&sums[12 * c]);
+        const Columns         centre = columns(of_points[c].centre);
+        // A stresslet S as a double layer of its columns at one point: -3/(8 pi) y (y . S y)/|y|^5.
+        const ControlPoints missing = symmetric_without_trace(-moment) - of_points[c].stresslet, unit_vectors = Eigen::Matrix3d::Identity();
+        add_double_layer(columns(of_points[c].centre.replicate(3, 1)), columns(missing), columns(unit_vectors), -0.5, faces_.places(), on_faces);
+        if (of_points.size() > 1)
+          add_stokeslets(centre,
+                         columns(Eigen::RowVector3d(Eigen::Map<const Eigen::RowVector3d>(&sums[12 * c + 9]) - of_points[c].force)),
+                         faces_.places(),
+                         on_faces);
       }
   }
 
@@ -159,13 +178,11 @@ namespace tanktread
   void
   UnboundedLiquid::set(const State &state, const ShellConfigurations &shells, const ShellFields &velocities)
   {
-    if (viscosity_ratio_ != 1. && layout_.n_capsules() > 1)
-      throw std::logic_error("UnboundedLiquid: another viscosity inside is for one capsule.");
     Columns velocity;
     velocity.fill(std::vector<double>(faces_.places()[0].size(), 0.));
-    add_all_stokeslets(state, shells, velocity);
+    const std::vector<Multipoles> of_points = add_all_points(state, shells, velocities, velocity);
     if (viscosity_ratio_ != 1.)
-      add_other_viscosity(state, *shells[0], velocities[0], velocity);
+      add_missing(state.fluid, of_points, velocity);
     faces_.set(velocity);
   }
 } // namespace tanktread

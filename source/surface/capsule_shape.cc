@@ -3,6 +3,7 @@
 
 #include <tanktread/base/enum_parameter.h>
 #include <tanktread/base/exceptions.h>
+#include <tanktread/base/number_text.h>
 #include <tanktread/surface/capsule_shape.h>
 #include <tanktread/surface/surface_geometry.h>
 #include <tanktread/surface/surface_operators.h>
@@ -21,14 +22,6 @@ namespace tanktread
 {
   namespace
   {
-    std::string
-    number(const double value)
-    {
-      std::ostringstream text;
-      text << value;
-      return text.str();
-    }
-
     /** Where the shape has the material point that the unit sphere has at s; not yet scaled or turned. */
     Eigen::Vector3d
     shape_point(const CapsuleShapeParameters &parameters, const Eigen::Vector3d &s)
@@ -88,7 +81,7 @@ namespace tanktread
       const ControlPoints result = solver.solveWithGuess(surface.S().transposed_times(wanted), x);
       if (solver.info() != Eigen::Success || !result.allFinite())
         throw NumericalError("The control points of the capsule's shape were not found: conjugate gradients stopped at a relative residual of " +
-                             number(solver.error()) + " after " + std::to_string(solver.iterations()) + " iterations.");
+                             number_text(solver.error()) + " after " + std::to_string(solver.iterations()) + " iterations.");
       return result;
     }
 
@@ -105,7 +98,7 @@ namespace tanktread
       const Eigen::MatrixXd columns = vertices, solution = solver.solve(columns); // SparseLU takes no matrices stored by rows
       const double          error = (stencils * solution - columns).norm();
       if (solver.info() != Eigen::Success || !(error <= 1e-9 * columns.norm()))
-        throw InputError("No subdivision surface passes through the vertices of the mesh file: the best one found misses them by " + number(error) + ".");
+        throw InputError("No subdivision surface passes through the vertices of the mesh file: the best one found misses them by " + number_text(error) + ".");
       return solution;
     }
 
@@ -132,13 +125,12 @@ namespace tanktread
   {
     using dealii::Patterns::Double;
     using dealii::Patterns::List;
-    prm.enter_subsection("Capsule");
     add_enum_parameter(
       prm,
       "Shape",
       shape,
       {{"sphere", Shape::sphere}, {"ellipsoid", Shape::ellipsoid}, {"oblate", Shape::oblate}, {"biconcave", Shape::biconcave}, {"file", Shape::file}},
-      "Initial shape; every shape is scaled to the volume of the unit sphere.");
+      "Initial shape; every shape is scaled to the volume of a sphere, of radius a.");
     prm.add_parameter("Axes", axes, "Ratio of the semi-axes of an ellipsoid along x, y and z, before it is turned.", List(Double(0.), 3, 3));
     prm.add_parameter("Aspect ratio",
                       aspect_ratio,
@@ -169,7 +161,6 @@ namespace tanktread
                       "Inflation alpha_p: the stress-free shape is smaller than described above by the factor 1/(1 + alpha_p). Negative: the membrane is "
                       "compressed at first.");
     prm.add_parameter("Mesh file", file, "Closed triangle mesh (.off, .obj or .vtk) whose vertices lie on the surface of the capsule, for the shape 'file'.");
-    prm.leave_subsection();
   }
 
 
@@ -192,9 +183,9 @@ namespace tanktread
     if (shape == Shape::file && stress_free != StressFreeShape::initial)
       throw InputError("Capsule/Stress-free shape: the points of a mesh file are not known on a sphere or spheroid; allowed with the shape 'file': initial.");
     if (stress_free == StressFreeShape::oblate && !(stress_free_aspect_ratio > 0. && stress_free_aspect_ratio <= 1.))
-      throw InputError("Capsule/Stress-free aspect ratio: got " + number(stress_free_aspect_ratio) + "; an oblate spheroid has one in (0, 1].");
+      throw InputError("Capsule/Stress-free aspect ratio: got " + number_text(stress_free_aspect_ratio) + "; an oblate spheroid has one in (0, 1].");
     if (!(prestress > -0.5 && prestress <= 9.))
-      throw InputError("Capsule/Prestress: got " + number(prestress) + "; allowed: an inflation above -0.5 and up to 9.");
+      throw InputError("Capsule/Prestress: got " + number_text(prestress) + "; allowed: an inflation above -0.5 and up to 9.");
   }
 
 
@@ -205,6 +196,15 @@ namespace tanktread
   }
 
 
+  TriangleMesh
+  read_closed_surface(const std::string &file)
+  {
+    TriangleMesh result = read_triangle_mesh(file);
+    check_closed_surface(result, "Mesh file '" + file + "'");
+    return result;
+  }
+
+
   FittedShape
   make_capsule(const CapsuleShapeParameters &parameters, const unsigned int level)
   {
@@ -212,8 +212,7 @@ namespace tanktread
     FittedShape result;
     if (parameters.shape == Shape::file)
       {
-        result.topology = read_triangle_mesh(parameters.file);
-        check_closed_surface(result.topology, "Mesh file '" + parameters.file + "'");
+        result.topology       = parameters.mesh ? *parameters.mesh : read_closed_surface(parameters.file);
         result.control_points = interpolate_vertices(result.topology);
       }
     else
@@ -223,7 +222,7 @@ namespace tanktread
       }
     const SubdivisionSurface surface = measured_surface(result.topology);
     place(surface, parameters.turn(), result.control_points);
-    result.control_points *= std::cbrt(4. * M_PI / 3. / enclosed_volume(surface, result.control_points));
+    result.control_points *= parameters.size * std::cbrt(4. * M_PI / 3. / enclosed_volume(surface, result.control_points));
     return result;
   }
 

@@ -189,9 +189,9 @@ namespace
     CapsuleShapeParameters   shape;
     dealii::ParameterHandler prm;
     shape.add_parameters(prm);
-    prm.parse_input_from_string("subsection Capsule\nset Shape = ellipsoid\nset Axes = 3, 2, 1\nset Inclination = 0.25\nset Inclined axis = symmetry\n"
+    prm.parse_input_from_string("set Shape = ellipsoid\nset Axes = 3, 2, 1\nset Inclination = 0.25\nset Inclined axis = symmetry\n"
                                 "set Mesh file = a.off\nset Aspect ratio = 0.7\n"
-                                "set Stress-free shape = oblate\nset Stress-free aspect ratio = 0.95\nset Prestress = 0.05\nend\n");
+                                "set Stress-free shape = oblate\nset Stress-free aspect ratio = 0.95\nset Prestress = 0.05\n");
     EXPECT_EQ(shape.stress_free, StressFreeShape::oblate);
     EXPECT_EQ(shape.stress_free_aspect_ratio, 0.95);
     EXPECT_EQ(shape.prestress, 0.05);
@@ -204,7 +204,7 @@ namespace
     EXPECT_EQ(shape.aspect_ratio, 0.7);
     EXPECT_EQ(shape.file, "a.off");
     EXPECT_NO_THROW(shape.check());
-    EXPECT_ANY_THROW(prm.parse_input_from_string("subsection Capsule\nset Axes = 3, 2\nend\n"));
+    EXPECT_ANY_THROW(prm.parse_input_from_string("set Axes = 3, 2\nend\n"));
     shape.axes[1] = 0.;
     EXPECT_THROW(shape.check(), InputError);
     shape.shape        = Shape::oblate;

@@ -138,8 +138,8 @@ namespace
     ShellParameters          parameters;
     dealii::ParameterHandler prm;
     parameters.add_parameters(prm);
-    prm.parse_input_from_string("subsection Capsule\nset Membrane law = Skalak\nset Area dilatation number = 20\nset Reference curvature = value\n"
-                                "set Reference curvature value = -0.5\nset Bending form = moment-only\nset Thickness = 0\nend\n");
+    prm.parse_input_from_string("set Membrane law = Skalak\nset Area dilatation number = 20\nset Reference curvature = value\n"
+                                "set Reference curvature value = -0.5\nset Bending form = moment-only\nset Thickness = 0\n");
     EXPECT_EQ(parameters.law, MembraneLaw::skalak);
     EXPECT_EQ(parameters.area_dilatation, 20.);
     EXPECT_EQ(parameters.reference, ReferenceCurvature::value);

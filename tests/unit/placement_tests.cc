@@ -91,7 +91,7 @@ TEST(Placement, ListsSayWhatPlacesAre)
   const auto [centres, rotations] = as_lists(places);
   const File               file("placement.prm",
                   "subsection Scene\nset Box side = 40\nend\nsubsection Capsule\nset Centres = " + centres + "\nset Rotations = " + rotations + "\nend\n");
-  const std::vector<Place> found = read_parameters(file.path.string()).placement.places();
+  const std::vector<Place> found = read_parameters(file.path.string()).kinds[0].placement.places();
   ASSERT_EQ(found.size(), 2u);
   for (unsigned int c = 0; c < 2; ++c)
     {
@@ -121,7 +121,7 @@ TEST(Placement, FilesAreRead)
   // From a parameter file, in whose folder they are; what was used is a list.
   const File       prm("from_file.prm", "subsection Capsule\nset Placement = file\nset Places file = places.txt\nend\n");
   const Parameters parameters = read_parameters(prm.path.string());
-  EXPECT_EQ(parameters.placement.places().size(), 2u);
+  EXPECT_EQ(parameters.kinds[0].placement.places().size(), 2u);
   EXPECT_TRUE(has(parameters.used, "= list")) << parameters.used;
 }
 
@@ -147,8 +147,8 @@ TEST(Placement, WrongOnesAreRefused)
 TEST(Placement, RandomSpheresDoNotTouch)
 {
   const Box             box({{8., 9., 10.}}, between_walls);
-  const RandomPlacement wanted{52, 7, 0.05, 0.2, false}; // 30 % of the volume
-  const auto            places = random_places(wanted, shape(Shape::sphere), box);
+  const RandomPlacement wanted{7, 0.05, 0.2}; // 30 % of the volume
+  const auto            places = random_places(wanted, {{shape(Shape::sphere), 52}}, box)[0];
   ASSERT_EQ(places.size(), 52u);
   EXPECT_GE(least_distance(places, box), 2.05 - 1e-3);
   double farthest = 0., square = 0.;
@@ -161,7 +161,7 @@ TEST(Placement, RandomSpheresDoNotTouch)
   EXPECT_LE(farthest, 3.8 + 1e-3);
   EXPECT_NEAR(square, 64. / 12., 64. / 12. * 4. * std::sqrt(0.8 / 52.)); // evenly spread along x; four standard deviations
 
-  const auto again = random_places(wanted, shape(Shape::sphere), box), other = random_places({52, 8, 0.05, 0.2, false}, shape(Shape::sphere), box);
+  const auto again = random_places(wanted, {{shape(Shape::sphere), 52}}, box)[0], other = random_places({8, 0.05, 0.2}, {{shape(Shape::sphere), 52}}, box)[0];
   EXPECT_EQ(places[51].centre, again[51].centre);
   EXPECT_GT((places[51].centre - other[51].centre).norm(), 1e-3);
 }
@@ -171,7 +171,7 @@ TEST(Placement, RandomDisksDoNotTouch)
 {
   const Box         box({{9., 9., 9.}}, between_walls);
   const FittedShape disk   = shape(Shape::biconcave, 3);
-  const auto        places = random_places({26, 3, 0.1, 0.1, true}, shape(Shape::biconcave), box); // 15 %
+  const auto        places = random_places({3, 0.1, 0.1}, {{shape(Shape::biconcave), 26, true}}, box)[0]; // 15 %
   ShellFields       x;
   double            upright = 0.;
   for (const Place &place : places)

@@ -156,3 +156,29 @@ TEST(UnboundedLiquid, CarriesOneShellWithTheFlowOfAnother)
   EXPECT_LT(own, 0.007);
   EXPECT_LT(error, 0.02);
 }
+
+
+TEST(UnboundedLiquid, OtherViscositiesInTwoShellsNeedNoLargeBox)
+{
+  // Two shells, apart and with a film thinner than a cell between them; their flow is that of a box with eight times the volume.
+  for (const double apart : {2.6, 2.15})
+    {
+      const std::vector<Eigen::RowVector3d> centres = {{-0.313, -0.48 * apart, 0.114}, {0.213, 0.5 * apart, -0.131}};
+      std::vector<ShellFields>              velocities;
+      for (const double side : {7.5, 15.})
+        {
+          GivenForces         scene(make_capsule({}, 2), Interface::enriched, side, {0.3125, 1.25, 1.5}, centres, {5., {}}, true);
+          const ControlPoints strained = (scene.X().rowwise() - centres[0]) * strain(), pulled = ControlPoints::Constant(scene.X(1).rows(), 3, 0.2);
+          velocities.push_back(scene.flow({scene.nodal_forces(13. * strained), scene.nodal_forces(pulled, 1)}, 1e-8, 5).velocity);
+        }
+      double difference = 0., norm = 0.;
+      for (unsigned int c = 0; c < 2; ++c)
+        {
+          difference += (velocities[0][c] - velocities[1][c]).squaredNorm();
+          norm += velocities[1][c].squaredNorm();
+        }
+      if (is_root())
+        std::cout << "centres " << apart << " apart: boxes differ by " << std::sqrt(difference / norm) << std::endl;
+      EXPECT_LT(std::sqrt(difference / norm), 1e-3);
+    }
+}

@@ -17,14 +17,15 @@ namespace tanktread
   struct RunDescription
   {
     std::string  parameter_file;
-    unsigned int n_ranks  = 1;
-    std::string  flow;              // "shear"
-    bool         has_rate   = true; // time in 1/gamma, otherwise in mu a^3 / kappa_B
-    double       G          = 0.;   // mu gamma a / (E h); unused without a rate
-    double       khat       = 0.;   // kappa_B / (a^2 E h)
-    std::string  box;               // its sides in a: "10 x 10 x 10"
+    unsigned int n_ranks = 1;
+    std::string  flow;            // "shear"
+    bool         has_rate = true; // time in 1/gamma, otherwise in mu a^3 / kappa_B
+    double       G        = 0.;   // mu gamma a / (E h); unused without a rate
+    double       khat     = 0.;   // kappa_B / (a^2 E h)
+    std::string  box;             // its sides in a: "10 x 10 x 10"
     unsigned int n_capsules = 1;
-    double       Re         = 0.; // Reynolds number; 0: no line
+    std::string  kinds;   // which capsules are of which kind; empty if all are of one
+    double       Re = 0.; // Reynolds number; 0: no line
 
     std::vector<std::string> included; // physics that the scene asks for beyond the simplest
     std::vector<std::string> left_out; // what the scene does not need: "inertia (Re = 0)"

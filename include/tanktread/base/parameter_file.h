@@ -51,6 +51,10 @@ namespace tanktread
   ParameterSource
   read_parameter_file(dealii::ParameterHandler &prm, const std::string &file_name, const std::vector<std::string> &overrides = {});
 
+  /** Throws InputError where the file cannot be read. */
+  std::string
+  text_of_parameter_file(const std::string &file_name);
+
   /** Same for the text of a file; `file_name` is used in messages only. */
   ParameterSource
   read_parameter_text(dealii::ParameterHandler &prm, const std::string &text, const std::string &file_name, const std::vector<std::string> &overrides = {});

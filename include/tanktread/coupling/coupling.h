@@ -12,6 +12,7 @@
 #include <tanktread/coupling/shell_viscosity.h>
 #include <tanktread/fluid/point_interpolation.h>
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -205,15 +206,16 @@ namespace tanktread
     ShellFields
     sum_moments(const std::vector<double> &values, std::vector<double> *fluxes = nullptr) const;
 
-    /** Point forces w S g of all present shells. */
+    /** Two numbers for each present capsule. */
+    using NumbersOfCapsules = std::vector<std::array<double, 2>>;
+
+    /** Point forces w S g of all present shells. @param numbers go to guests in the same messages, unless null. */
     void
-    set_point_forces(const ShellFields &g, std::vector<double> &forces) const;
+    set_point_forces(const ShellFields &g, std::vector<double> &forces, NumbersOfCapsules *numbers = nullptr) const;
 
     /** Fields of all present capsules by those of the own ones; in `memory`, unless there are no others here. Collective. */
     const ShellFields &
-    at_guests(const ShellFields &own, ShellFields &memory) const;
-    std::vector<double>
-    at_guests(const std::vector<double> &own) const;
+    at_guests(const ShellFields &own, ShellFields &memory, NumbersOfCapsules *numbers = nullptr) const;
     /** Shells of all present capsules, of which guests are taken from `known` if they are there. Collective. */
     ShellConfigurations
     present_shells(const ShellConfigurations &own, const ShellGuests &guests, const ShellConfigurations &known) const;

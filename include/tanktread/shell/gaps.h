@@ -7,7 +7,6 @@
 #include <tanktread/shell/shell_configuration.h>
 
 #include <array>
-#include <cstddef>
 #include <limits>
 #include <vector>
 
@@ -25,14 +24,9 @@ namespace tanktread
    * shell from the nearest quadratic patch (or plane, without second
    * derivatives) of the other one; pairs that are farther apart than `reach` are judged by every 16th point and so to about the distance of these. A capsule
    * and images of itself count within `reach` only.
-   *
-   * @param n_own pairs count of which one is among the first n_own shells.
    */
   ShellGap
-  smallest_gap(const ShellConfigurations   &shells,
-               const std::array<double, 3> &periods,
-               double                       reach,
-               std::size_t                  n_own = std::numeric_limits<std::size_t>::max());
+  smallest_gap(const ShellConfigurations &shells, const std::array<double, 3> &periods, double reach);
 
   /**
    * Smallest distance of parts of one shell that face opposite ways (normals at more than 154 degrees): two sheets with liquid between them, outside as where a dimple closes on itself, or inside as where a disk is

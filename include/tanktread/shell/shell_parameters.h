@@ -44,7 +44,7 @@ namespace tanktread
     BendingForm        form                      = BendingForm::variational;
     double             thickness                 = 0.;
 
-    /** Declares the parameters in section "Capsule" of `prm`; parsing fills this object, which has to outlive `prm`. */
+    /** Declares the parameters in the section of `prm` that is open; parsing fills this object, which has to outlive `prm`. */
     void
     add_parameters(dealii::ParameterHandler &prm);
 

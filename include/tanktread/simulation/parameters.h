@@ -5,15 +5,13 @@
 #define tanktread_simulation_parameters_h
 
 #include <tanktread/fluid/fluid_mesh_parameters.h>
-#include <tanktread/shell/shell_parameters.h>
 #include <tanktread/simulation/accuracy.h>
+#include <tanktread/simulation/kind_parameters.h>
 #include <tanktread/simulation/output_parameters.h>
-#include <tanktread/simulation/placement_parameters.h>
 #include <tanktread/simulation/scene_parameters.h>
 #include <tanktread/simulation/study_parameters.h>
 #include <tanktread/simulation/time_stepping.h>
 #include <tanktread/solver/solver_parameters.h>
-#include <tanktread/surface/capsule_shape.h>
 
 #include <string>
 #include <vector>
@@ -46,37 +44,53 @@ namespace tanktread
   /** Everything that a parameter file can say. Members start with the defaults. */
   struct Parameters
   {
-    AccuracyParameters     accuracy;
-    SceneParameters        scene;
-    CapsuleShapeParameters capsule;
-    PlacementParameters    placement;
-    ShellParameters        shell;
-    ShellMeshParameters    shell_mesh;
-    FluidMeshParameters    fluid_mesh;
-    TimeParameters         time;
-    SolverParameters       solver;
-    OutputParameters       output;
-    StudyParameters        study;
+    AccuracyParameters          accuracy;
+    SceneParameters             scene;
+    std::vector<KindParameters> kinds; // of capsules
+    ShellMeshParameters         shell_mesh;
+    FluidMeshParameters         fluid_mesh;
+    TimeParameters              time;
+    SolverParameters            solver;
+    OutputParameters            output;
+    StudyParameters             study;
 
-    /** Whether the control points are moved along the shells. */
+    /** @param n_kinds of capsules. */
+    explicit Parameters(std::size_t n_kinds = 1);
+
+    /** Whether the control points are moved along the shells, which then is so for all kinds. */
     bool
     control_mesh_stays_even() const;
+
+    /** E h and kappa_B of a kind, in the units of the scene. */
+    ShellModuli
+    moduli(const KindParameters &kind) const;
+
+    /** Over all kinds. */
+    std::size_t
+    n_capsules() const;
+
+    bool
+    bends() const;
+
+    bool
+    has_mesh_file() const;
 
     std::vector<Choice> choices; // made for Accuracy/Target error, and set
 
     std::string file; // name of the parameter file
     std::string used; // all parameters with the values used, as a parameter file that can be read again
 
-    /** Declares all sections in `prm`; parsing fills this object, which has to outlive `prm`. */
+    /** Declares all sections in `prm`, those of `kinds` among them; parsing fills this object, which has to outlive `prm`. */
     void
     add_parameters(dealii::ParameterHandler &prm);
 
     /**
      * Checks each section, what they mean together, the mesh file and the output folder; nothing is written.
-     * @throws InputError with one line for each section that is wrong, beginning with the place in `source` where the parameter was set.
+     * @param errors known before, one a line.
+     * @throws InputError with them and with one line for each section that is wrong, beginning with the place in `source` where the parameter was set.
      */
     void
-    check(const ParameterSource &source) const;
+    check(const ParameterSource &source, std::string errors = {}) const;
   };
 
   /**

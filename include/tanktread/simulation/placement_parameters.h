@@ -24,7 +24,7 @@ namespace tanktread
     random // number, volume fraction, seed and least gap
   };
 
-  /** The parameters of section "Capsule" that place capsules, all of one kind. */
+  /** The parameters that place the capsules of a kind. */
   struct PlacementParameters
   {
     Placement                        placement = Placement::list;
@@ -37,11 +37,11 @@ namespace tanktread
     bool                             turned          = false;
     double                           least_gap       = 0.1; // a
 
-    /** Declares the parameters in section "Capsule" of `prm`; parsing fills this object, which has to outlive `prm`. */
+    /** Declares the parameters in the section of `prm` that is open; parsing fills this object, which has to outlive `prm`. */
     void
     add_parameters(dealii::ParameterHandler &prm);
 
-    /** Throws InputError on a list of rotations that does not fit the centres, and on random places without one number or fraction. */
+    /** Throws InputError on an empty list, on a list of rotations that does not fit the centres, and on random places without one number or fraction. */
     void
     check() const;
 
@@ -49,9 +49,9 @@ namespace tanktread
     std::vector<Place>
     places() const;
 
-    /** How many capsules are placed at random in a box of that volume: the number, or that which comes nearest to the volume fraction, at least one. */
+    /** How many capsules of the radius `size` are placed at random in a box of that volume: the number, or that which comes nearest to the volume fraction, at least one. */
     unsigned int
-    number_in(double volume) const;
+    number_in(double volume, double size = 1.) const;
   };
 
   /** Places as values of the parameters "Centres" and "Rotations", in that order, to sixteen digits; no rotations if none of the places is turned. */

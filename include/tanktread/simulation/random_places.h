@@ -12,25 +12,32 @@
 
 namespace tanktread
 {
+  /** Capsules of one shape. */
+  struct KindInPlace
+  {
+    FittedShape        shape;          // about the origin; a coarse control mesh will do
+    unsigned int       number = 1;     // at random places
+    bool               turned = false; // orientations at random too; as the shape has them otherwise
+    std::vector<Place> fixed  = {};    // places of further ones, which the random ones have to leave room for
+  };
+
   /** What is asked for. */
   struct RandomPlacement
   {
-    unsigned int number    = 1;
     unsigned int seed      = 1;
-    double       least_gap = 0.1;   // between capsules and their periodic images, in a
-    double       face_gap  = 0.1;   // to faces with prescribed velocity
-    bool         turned    = false; // orientations at random too; as the shape has them otherwise
+    double       least_gap = 0.1; // between capsules and their periodic images, in a
+    double       face_gap  = 0.1; // to faces with prescribed velocity
   };
 
   /**
    * Places without overlap: capsules start small at random, move and turn at random as hard bodies do, and grow as far as gaps allow after each round, until they have their size (Lubachevsky & Stillinger,
    * J. Stat. Phys. 60, 561 (1990), with Monte Carlo moves in the place of collisions). The same for the same arguments. Gaps are those of the vertices' limit positions of one capsule from the tangent
    * planes at those of the other.
-   * @param shape about the origin; a coarse control mesh will do.
-   * Throws InputError where the capsules do not fit: `number` is too large for the box.
+   * @return random places of each of `kinds`.
+   * Throws InputError where the capsules do not fit: there are too many of them for the box.
    */
-  std::vector<Place>
-  random_places(const RandomPlacement &wanted, const FittedShape &shape, const Box &box);
+  std::vector<std::vector<Place>>
+  random_places(const RandomPlacement &wanted, const std::vector<KindInPlace> &kinds, const Box &box);
 } // namespace tanktread
 
 #endif

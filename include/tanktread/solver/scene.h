@@ -24,6 +24,13 @@ namespace tanktread
     ShellModuli                       moduli{1., 0.};
     unsigned int                      shell_quadrature = 3; // points a face
     std::optional<TriangleQuadrature> coupling_quadrature;  // of each face; unless given that which the finest cells ask for
+
+    /** Whether the forces are the derivative of an energy, which the moments of bending alone are not. */
+    bool
+    has_energy() const
+    {
+      return shell.form == BendingForm::variational || moduli.bending_modulus == 0.;
+    }
   };
 
   /** What a scene is made of: all that a run, a benchmark or a test has to say about it. */

@@ -20,9 +20,10 @@ namespace tanktread
    * less its rigid part, which contributes nothing. Total force, moments x F^T of the forces and v U^T of the velocities are those of the surfaces exactly; what is
    * left of second moments on falls faster with the distance and with the square of the control points' distances.
    *
-   * With another viscosity inside, a stresslet in the middle of the shell is added that makes their sum the one of the discrete equations, -sym(sum_j x_j l_j)
+   * With another viscosity inside, a stresslet in the middle of each shell is added that makes their sum the one of the discrete equations, -sym(sum_j x_j l_j)
    * without its trace, l the loads that would make the same flow with viscosity 1 everywhere, over the nodes near and inside the shell. The integral of U n is
-   * multiplied by the viscosity, and with it its error.
+   * multiplied by the viscosity, and with it its error. Of several shells each has the nodes that are nearest to its centre; what the sum of their loads differs from the force of its points, where two
+   * shells share cells, is a Stokeslet there.
    */
   class UnboundedLiquid
   {
@@ -39,7 +40,7 @@ namespace tanktread
 
     /**
      * Makes the velocities on the faces those of `state`. @param shells at its positions. @param velocities U, read with another viscosity inside only.
-     * Collective. Throws std::logic_error for several shells with another viscosity inside.
+     * Collective.
      */
     void
     set(const State &state, const ShellConfigurations &shells, const ShellFields &velocities);
@@ -51,16 +52,25 @@ namespace tanktread
     }
 
   private:
-    /** The stresslet of the discrete equations with the flow `fields`, about `centre`. Collective. */
-    Eigen::Matrix3d
-    discrete_stresslet(const FluidBlockVector &fields, const Eigen::RowVector3d &centre);
+    /** A capsule from far away. */
+    struct Multipoles
+    {
+      Eigen::RowVector3d centre    = Eigen::RowVector3d::Zero();
+      Eigen::RowVector3d force     = Eigen::RowVector3d::Zero();
+      Eigen::Matrix3d    stresslet = Eigen::Matrix3d::Zero(); // symmetric, without trace
+    };
 
-    void
-    add_other_viscosity(const State &state, const ShellConfiguration &shell, const ControlPoints &velocity, Columns &on_faces);
+    /** Fields of the capsules of a team, all that the faces have to know: x and force, with another viscosity inside U and v too. Collective. */
+    std::vector<std::vector<ControlPoints>>
+    fields_of_team(unsigned int team, const State &state, const ShellConfigurations &shells, const ShellFields &velocities) const;
 
-    /** Stokeslets of the forces of all capsules, those of one team after the other: each rank has faces of its own. Collective. */
+    /** The flow of all capsules, those of one team after the other: each rank has faces of its own. Returns what their points are from far away. Collective. */
+    std::vector<Multipoles>
+    add_all_points(const State &state, const ShellConfigurations &shells, const ShellFields &velocities, Columns &on_faces) const;
+
+    /** Adds what makes `of_points` those of the discrete equations with the flow `fields`. Collective. */
     void
-    add_all_stokeslets(const State &state, const ShellConfigurations &shells, Columns &on_faces) const;
+    add_missing(const FluidBlockVector &fields, const std::vector<Multipoles> &of_points, Columns &on_faces);
 
     const TaylorHoodSpace    &space_;
     const ShellLayout        &layout_;

@@ -8,6 +8,7 @@
 #include <tanktread/surface/types.h>
 
 #include <array>
+#include <memory>
 #include <string>
 
 namespace dealii
@@ -17,7 +18,7 @@ namespace dealii
 
 namespace tanktread
 {
-  /** Shapes a capsule can start from; all are scaled to the volume 4 pi/3. */
+  /** Shapes a capsule can start from; all are scaled to the volume of a sphere. */
   enum class Shape
   {
     sphere,
@@ -43,7 +44,7 @@ namespace tanktread
   };
 
   /**
-   * The parameters of section "Capsule" that describe the initial shape and the stress-free one.
+   * The parameters that describe the initial shape of a kind of capsule and the stress-free one.
    *
    * - ellipsoid: semi-axes in the ratio `axes` along x, y, z.
    * - oblate: spheroid with semi-axis b along z and a along x and y, `aspect_ratio` = b/a.
@@ -65,18 +66,20 @@ namespace tanktread
    */
   struct CapsuleShapeParameters
   {
-    Shape                 shape         = Shape::sphere;
-    std::array<double, 3> axes          = {{2., 2., 1.}};
-    double                aspect_ratio  = 0.6;
-    double                inclination   = 0.;
-    InclinedAxis          inclined_axis = InclinedAxis::long_axis;
-    std::string           file;
+    Shape                               shape         = Shape::sphere;
+    std::array<double, 3>               axes          = {{2., 2., 1.}};
+    double                              aspect_ratio  = 0.6;
+    double                              inclination   = 0.;
+    InclinedAxis                        inclined_axis = InclinedAxis::long_axis;
+    std::string                         file;
+    std::shared_ptr<const TriangleMesh> mesh;      // contents of `file`; read whenever they are needed where there are none
+    double                              size = 1.; // radius of the sphere with the same volume, in a
 
     StressFreeShape stress_free              = StressFreeShape::initial;
     double          stress_free_aspect_ratio = 0.9;
     double          prestress                = 0.; // alpha_p: how much longer all lengths of the initial shape are than if it had not been inflated
 
-    /** Declares the parameters in section "Capsule" of `prm`; parsing fills this object, which has to outlive `prm`. */
+    /** Declares the parameters in the section of `prm` that is open; parsing fills this object, which has to outlive `prm`. */
     void
     add_parameters(dealii::ParameterHandler &prm);
 
@@ -99,9 +102,13 @@ namespace tanktread
     ControlPoints control_points;
   };
 
+  /** The triangles of a mesh file. Throws what read_triangle_mesh() and check_closed_surface() throw. */
+  TriangleMesh
+  read_closed_surface(const std::string &file);
+
   /**
    * Control points whose limit surface is the shape wanted: a least-squares fit of the analytic shape on icosphere(level), or, for Shape::file, the limit
-   * surface that passes through the vertices (`level` is not used then). The enclosed volume is 4 pi/3 by a quadrature with 48 points a face
+   * surface that passes through the vertices (`level` is not used then). The enclosed volume is 4 pi/3 size^3 by a quadrature with 48 points a face
    * (coarser rules see 1e-5 more or less at level 4, from the faces at extraordinary vertices), its centroid the origin. Throws InputError where check(),
    * read_triangle_mesh() or check_closed_surface() do and where no surface passes through the vertices, NumericalError where the fit does not converge.
    */
