@@ -12,8 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <set>
 
 namespace tanktread
 {
@@ -41,23 +39,6 @@ namespace tanktread
 
   namespace
   {
-    /** i modulo n, from 0 to n - 1 */
-    int
-    modulo(const int i, const int n)
-    {
-      return ((i % n) + n) % n;
-    }
-
-
-    /** Ranks whose cells points are in, which may differ from rank to rank. Collective: deal.II's function is, though p4est's is not. */
-    std::vector<unsigned int>
-    owners(const FluidMesh::Triangulation &triangulation, const std::vector<dealii::Point<3>> &points)
-    {
-      // It does not change the mesh, but p4est's function is declared as if it might.
-      return const_cast<FluidMesh::Triangulation &>(triangulation).find_point_owner_rank(points);
-    }
-
-
     /** Inserts a cell and all its ancestors. */
     void
     insert_with_ancestors(CellKey cell, std::unordered_set<std::uint64_t> &cells)
@@ -70,6 +51,13 @@ namespace tanktread
         }
     }
   } // namespace
+
+
+  int
+  FluidMesh::modulo(const int i, const int n)
+  {
+    return ((i % n) + n) % n;
+  }
 
 
   FluidMesh::FluidMesh(const MPI_Comm communicator, const Box &box, const FluidMeshParameters &parameters)
@@ -195,6 +183,16 @@ namespace tanktread
   }
 
 
+  FluidMesh::KeySet
+  FluidMesh::cells_with(const std::vector<dealii::Point<3>> &points) const
+  {
+    KeySet result;
+    for (const auto &point : points)
+      result.insert(place(point, finest_level_).key.packed());
+    return result;
+  }
+
+
   void
   FluidMesh::add_grading(const std::vector<dealii::Point<3>> &points, KeySet &wanted) const
   {
@@ -222,7 +220,8 @@ namespace tanktread
   {
     KeySet wanted;
     on_all_ranks(communicator_, [&] {
-      wanted = wanted_cells(points, band_width_);
+      wanted       = wanted_cells(points, band_width_);
+      with_points_ = cells_with(points);
       if (grading_ > 0)
         add_grading(points, wanted);
     });
@@ -233,98 +232,20 @@ namespace tanktread
   }
 
 
-  std::vector<dealii::Point<3>>
-  FluidMesh::places_near(const std::vector<dealii::Point<3>> &points) const
-  {
-    // p4est divides the cells such that eight which could be merged are on one rank: the lowest of them answers for all.
-    const unsigned int            level = std::max(finest_level_, 1u) - 1;
-    const std::array<int, 3>      n     = n_cubes(level);
-    KeySet                        with_points, asked;
-    std::vector<dealii::Point<3>> result;
-    for (const auto &point : points)
-      if (const CellKey cube = place(point, level).key; with_points.insert(cube.packed()).second)
-        for (int neighbour = 0; neighbour < 27; ++neighbour)
-          {
-            const std::array<int, 3> offset    = {{neighbour % 3 - 1, neighbour / 3 % 3 - 1, neighbour / 9 - 1}};
-            CellKey                  near      = cube;
-            bool                     is_in_box = true;
-            for (unsigned int d = 0; d < 3; ++d)
-              {
-                near.position[d] += offset[d];
-                if (box_.is_periodic(d))
-                  near.position[d] = modulo(near.position[d], n[d]);
-                is_in_box = is_in_box && near.position[d] >= 0 && near.position[d] < n[d];
-              }
-            if (is_in_box && asked.insert(near.packed()).second)
-              result.push_back(point_in(near));
-          }
-    return result;
-  }
-
-
-  std::vector<std::vector<unsigned int>>
-  FluidMesh::ranks_near(const std::vector<std::vector<dealii::Point<3>>> &points) const
-  {
-    std::vector<dealii::Point<3>> places;
-    std::vector<std::size_t>      ends;
-    on_all_ranks(communicator_, [&] {
-      for (const auto &of_set : points)
-        {
-          const std::vector<dealii::Point<3>> further = places_near(of_set);
-          places.insert(places.end(), further.begin(), further.end());
-          ends.push_back(places.size());
-        }
-    });
-    const std::vector<unsigned int>        ranks = owners(triangulation_, places);
-    std::vector<std::vector<unsigned int>> result;
-    std::size_t                            begin = 0;
-    for (const std::size_t end : ends)
-      {
-        const std::set<unsigned int> of_set(ranks.begin() + begin, ranks.begin() + end);
-        result.emplace_back(of_set.begin(), of_set.end());
-        begin = end;
-      }
-    return result;
-  }
-
-
-  dealii::Point<3>
-  FluidMesh::point_in(const CellKey &cube) const
-  {
-    dealii::Point<3> result;
-    for (unsigned int d = 0; d < 3; ++d)
-      result[d] = box_.lower(d) + (cube.position[d] + 0.21) * cell_size(cube.level);
-    return result;
-  }
-
-
-  FluidMesh::KeySet
-  FluidMesh::at_owners(const KeySet &cubes, const unsigned int level) const
-  {
-    if (dealii::Utilities::MPI::n_mpi_processes(communicator_) == 1)
-      return cubes;
-    std::vector<std::uint64_t>    keys;
-    std::vector<dealii::Point<3>> places;
-    for (const std::uint64_t key : cubes)
-      if (const CellKey cube = CellKey::unpacked(key); cube.level == level)
-        {
-          keys.push_back(key);
-          places.push_back(point_in(cube));
-        }
-    const std::vector<unsigned int>                    ranks = owners(triangulation_, places);
-    std::map<unsigned int, std::vector<std::uint64_t>> asked;
-    for (std::size_t i = 0; i < keys.size(); ++i)
-      asked[ranks[i]].push_back(keys[i]);
-    KeySet result;
-    for (const auto &[rank, of_rank] : dealii::Utilities::MPI::some_to_some(communicator_, asked))
-      result.insert(of_rank.begin(), of_rank.end());
-    return result;
-  }
-
-
   void
   FluidMesh::climb()
   {
+    std::unordered_map<std::uint64_t, unsigned int> parts;
+    boost::signals2::scoped_connection              by_work;
+    if (rung_ + 1 == finest_level_ && work_of_points_ > 0. && dealii::Utilities::MPI::n_mpi_processes(communicator_) > 1)
+      {
+        parts   = parts_with_points();
+        by_work = triangulation_.signals.weight.connect([&](const Triangulation::cell_iterator &cell, const Triangulation::CellStatus) {
+          constexpr double unit = 1000.; // of a cell; the parts of a cell that is divided are not told apart
+          const auto       here = parts.find(key(cell).packed());
+          return static_cast<unsigned int>(unit * (1. + (here == parts.end() ? 0. : work_of_points_ * here->second / 8.)));
+        });
+      }
     const KeySet wanted = rung_ < coarsest_level_ ? KeySet() : at_owners(wanted_, rung_);
     for (const auto &cell : triangulation_.active_cell_iterators())
       if (cell->is_locally_owned() && static_cast<unsigned int>(cell->level()) == rung_ && (rung_ < coarsest_level_ || wanted.count(key(cell).packed())))

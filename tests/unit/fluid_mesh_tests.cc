@@ -6,6 +6,9 @@
 
 #include "full_arrays.h"
 
+#include <iostream>
+#include <set>
+
 using namespace tanktread;
 using oracle::sphere_points;
 
@@ -140,6 +143,36 @@ TEST(FluidMesh, ClimbsOneLevelARung)
   EXPECT_EQ(mesh.triangulation().get_checksum(), whole.triangulation().get_checksum());
   mesh.restart();
   EXPECT_EQ(mesh.triangulation().n_global_active_cells(), std::pow(mesh.n_rung_0()[0], 3));
+}
+
+
+TEST(FluidMesh, IsDividedByWork)
+{
+  // Points in a corner of a box of few cells elsewhere; a cell with points counts as five.
+  constexpr double work   = 4.;
+  const auto       points = sphere_points(Point(-0.45, -0.4, -0.38), 0.45);
+  const auto       uneven = [&](const bool by_work) {
+    FluidMesh mesh(MPI_COMM_WORLD, side, cells(0.125, 0.0625)), reference(MPI_COMM_WORLD, side, cells(0.125, 0.0625));
+    mesh.set_work_of_cells_with_points(by_work ? work : 0.);
+    mesh.adapt(points);
+    reference.adapt(points);
+    EXPECT_EQ(mesh.triangulation().get_checksum(), reference.triangulation().get_checksum());
+    std::set<std::uint64_t> with_points;
+    for (const Point &point : points)
+      with_points.insert(mesh.place(point, mesh.finest_level()).key.packed());
+    double here = 0.;
+    for (const auto &cell : mesh.triangulation().active_cell_iterators())
+      if (cell->is_locally_owned())
+        here += 1. + work * with_points.count(mesh.key(cell).packed());
+    const double most = dealii::Utilities::MPI::max(here, MPI_COMM_WORLD), all = dealii::Utilities::MPI::sum(here, MPI_COMM_WORLD);
+    return most * dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) / all;
+  };
+  const double plain = uneven(false), by_work = uneven(true);
+  if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+    std::cout << "most work of a rank over the mean: " << plain << ", by work " << by_work << std::endl;
+  EXPECT_LT(by_work, 1.02);
+  if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+    EXPECT_GT(plain, 1.1);
 }
 
 

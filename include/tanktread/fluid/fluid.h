@@ -27,6 +27,13 @@ namespace tanktread
       , pressure_multigrid_(linear_elements())
     {}
 
+    /** See FluidMesh::set_work_of_cells_with_points(). */
+    void
+    set_work_of_cells_with_points(const double work)
+    {
+      mesh_.set_work_of_cells_with_points(work);
+    }
+
     /**
      * Refines around `points`; see FluidMesh::aim_at(). Returns true if the mesh changed: all vectors of before are void then. Collective.
      *

@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstdint>
+#include <unordered_map>
 #include <unordered_set>
 #include <vector>
 
@@ -65,6 +66,13 @@ namespace tanktread
     follows_films() const
     {
       return film_level_ > regular_level_;
+    }
+
+    /** How much more work a cell with points in it is than another one: ranks get cells of the finished mesh by their work. The same on all ranks, from the next climb() on. */
+    void
+    set_work_of_cells_with_points(const double work)
+    {
+      work_of_points_ = work;
     }
 
     /** The level of the smallest cells that films may ask for: finest_level() if none may. */
@@ -184,6 +192,10 @@ namespace tanktread
   private:
     using KeySet = std::unordered_set<std::uint64_t>;
 
+    /** From 0 to n - 1. */
+    static int
+    modulo(int i, int n);
+
     /** Packed keys of the finest cells within `band` finest cells of the points, and of all their ancestors. */
     KeySet
     wanted_cells(const std::vector<dealii::Point<3>> &points, double band) const;
@@ -199,6 +211,14 @@ namespace tanktread
     /** Cubes of a level, told by their packed keys, on the ranks that own their cells: those that one rank or another asks for. Collective. */
     KeySet
     at_owners(const KeySet &cubes, unsigned int level) const;
+
+    /** Packed keys of the finest cubes with points. */
+    KeySet
+    cells_with(const std::vector<dealii::Point<3>> &points) const;
+
+    /** How many of the eight parts of a cell have points, by the packed keys of the cells; those of this rank, on the last rung but one. Collective. */
+    std::unordered_map<std::uint64_t, unsigned int>
+    parts_with_points() const;
 
     /** Inserts the cells that have to be divided for the sake of the grading. */
     void
@@ -218,8 +238,10 @@ namespace tanktread
     std::array<int, 3> n_rung_0_;
     unsigned int       coarsest_level_, finest_level_, rung_ = 0;
     unsigned int       regular_level_, film_level_; // the least and the largest finest level
-    bool               aimed_ = false; // has a mesh been chosen?
-    KeySet             wanted_;        // by the points of this rank, of the mesh chosen last
+    bool               aimed_ = false;              // has a mesh been chosen?
+    KeySet             wanted_;                     // by the points of this rank, of the mesh chosen last
+    KeySet             with_points_;                // finest cubes, likewise
+    double             work_of_points_ = 0.;
     Triangulation      triangulation_;
   };
 } // namespace tanktread
