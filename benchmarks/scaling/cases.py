@@ -10,6 +10,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
@@ -82,6 +83,21 @@ def series(full=False, ranks=None, fraction=0.1):
 
 
 # --------------------------------------------------------------------------------------------------------------------- computing
+def busy_cores(seconds=1.):
+    """Cores that are not idle, over a while; nan where the system does not tell."""
+    def times():
+        fields = [int(word) for word in pathlib.Path("/proc/stat").read_text().split("\n", 1)[0].split()[1:]]
+        return sum(fields[:8]), fields[3] + fields[4]  # all; idle and waiting for files
+
+    try:
+        before = times()
+        time.sleep(seconds)
+        after = times()
+    except (OSError, ValueError, IndexError):
+        return math.nan
+    return os.cpu_count() * (1 - (after[1] - before[1]) / max(1, after[0] - before[0]))
+
+
 class Counted(run_scenes.Computation):
     """Runs of the program behind count_mpi.c."""
 
@@ -93,7 +109,7 @@ class Counted(run_scenes.Computation):
         counts = folder.parent / "counts"
         shutil.rmtree(folder.parent, ignore_errors=True)
         counts.mkdir(parents=True)
-        (folder.parent / "load.txt").write_text(f"{os.getloadavg()[0]:.2f}\n")
+        (folder.parent / "load.txt").write_text(f"{busy_cores():.2f}\n")
         (counts / "program.txt").write_text(identity(pathlib.Path(self.program)))
         yields = self.launcher == LAUNCHER and self.ranks > len(os.sched_getaffinity(0))  # more ranks than cores: those that wait let others compute
         counting = [f"LD_PRELOAD={self.library}", f"TANKTREAD_COUNT_MPI={counts}", f"TANKTREAD_COUNT_PLACES={int(self.case.places)}"]

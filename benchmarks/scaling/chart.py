@@ -40,8 +40,8 @@ def of_memory(axes, rows):
     axes.set_ylim(0, 1.1 * max((row["memory_largest"] for row in rows), default=1))
 
 
-def of_model(axes, rows, fraction):
-    law = model.of_rows(rows, fraction)
+def of_model(axes, rows, fraction, cores):
+    law = model.of_rows(rows, fraction, cores)
     if law is None:
         return
     parts = [law.parts(report.A_RANK * n, n) for n in report.RANKS_OF_MODEL]
@@ -57,7 +57,7 @@ def draw(notes, rows, figure):
     of_work(panels[0][0], rows)
     of_efficiency(panels[0][1], rows)
     of_memory(panels[1][0], rows)
-    of_model(panels[1][1], rows, float(notes["fraction"]))
+    of_model(panels[1][1], rows, float(notes["fraction"]), float(notes["cores"]))
     for axes in panels.flat:
         if axes.get_legend_handles_labels()[0]:
             axes.legend(fontsize=8)

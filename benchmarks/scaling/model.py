@@ -91,10 +91,10 @@ def numbers_of_sums(capsules, ranks):
     return np.array([1., capsules, min(capsules, ranks)])
 
 
-def of_rows(rows, fraction):
-    """The model of the cases, for that volume fraction; None where there are too few."""
+def of_rows(rows, fraction, cores=math.inf):
+    """The model of the cases, for that volume fraction; None where there are too few. Work is that of cases with no more ranks than cores: ranks that take turns on a core spoil each other's caches."""
     rows = [row for row in rows if row["state"] == "done"]
-    timed, alike = [row for row in rows if not row["places"]], [row for row in rows if abs(row["fraction"] - fraction) < 1e-9]
+    timed, alike = [row for row in rows if not row["places"] and row["ranks"] <= cores], [row for row in rows if abs(row["fraction"] - fraction) < 1e-9]
     several = [row for row in alike if row["ranks"] > 1]
     if len(timed) < 4 or len({row["ranks"] for row in timed}) < 2 or len(several) < 2:
         return None

@@ -148,13 +148,13 @@ def crossing(ranks):
     return "no number of" if math.isinf(ranks) else f"{ranks:.2g}" if ranks < 100 else f"{round(ranks, -int(math.log10(ranks)) + 1):.0f}"
 
 
-def of_model(rows, fraction):
-    law = model.of_rows(rows, fraction)
+def of_model(rows, fraction, cores):
+    law = model.of_rows(rows, fraction, cores)
     if law is None:
         return "## Model\n\nToo few cases for one.\n"
     a, b, c = law.work
     text = (f"## Model: 16 to 4096 ranks\n\n**This is a model, not a measurement.** With N capsules on P ranks a step takes each rank {milliseconds(a)} ms × N/P + {milliseconds(b)} ms × N + {milliseconds(c)} ms "
-            f"outside of MPI with {law.iterations:.3g} linear iterations (least squares of all cases that were timed, an iteration, of which the worst differs by {100 * law.error:.0f} %): divided work, what every rank does for all capsules, the rest. It sends "
+            f"outside of MPI with {law.iterations:.3g} linear iterations (least squares of the cases with no more ranks than cores, an iteration, of which the worst differs by {100 * law.error:.0f} %): divided work, what every rank does for all capsules, the rest. It sends "
             f"{law.a_neighbour:.3g} messages to each of its neighbours (as on the most ranks measured; all other ranks up to {model.NEIGHBOURS}), {size(law.surface)} × (N/P)^(2/3) in all, and takes part in "
             f"{law.sums[0]:.3g} + {law.sums[1]:.3g} N + {law.sums[2]:.3g} min(P, N) calls of all ranks, with {size(law.sum_bytes[0])} × N + {size(law.sum_bytes[1])}. A message costs {1e6 * model.LATENCY:g} μs and its bytes at "
             f"{model.BANDWIDTH / 1e9:g} GB/s of a rank; a call of all ranks log₂ P times that latency and twice its bytes. Memory of a rank: {law.memory[0]:.3g} MiB × N/P + {law.memory[1]:.3g} MiB × N + {law.memory[2]:.0f} MiB. "
@@ -174,8 +174,8 @@ def of_model(rows, fraction):
 # --------------------------------------------------------------------------------------------------------------------------- page
 def machine(notes, rows):
     load, cores = max((row["load"] for row in rows if row["state"] == "done"), default=math.nan), float(notes["cores"])
-    busy = " **The machine was busy: wall seconds are void, CPU seconds rough; iterations, messages, bytes and memory are not touched by it.**" if load > cores + 0.5 else ""
-    return f"{notes['machine']}; revision {notes['revision']}, {notes['date']}, {notes['mode']}. Largest load before a run: {load:.1f}; {notes['cores']} cores.{busy}"
+    busy = " **The machine was busy: wall seconds are void, CPU seconds rough; iterations, messages, bytes and memory are not touched by it.**" if load > 0.2 else ""
+    return f"{notes['machine']}; revision {notes['revision']}, {notes['date']}, {notes['mode']}. Cores that others used in the second before a run, at most: {load:.2f} of {notes['cores']}.{busy}"
 
 
 def page(notes, rows, link, places=()):
@@ -183,7 +183,7 @@ def page(notes, rows, link, places=()):
     fraction, cores = float(notes["fraction"]), float(notes["cores"])
     failed = [f"{row['case']}: {row['state']}" for row in rows if row["state"] != "done"]
     text = [INTRODUCTION.format(percent=100 * fraction, fine=10 / cases.finest_cell(fraction), dense=10 / cases.finest_cell(2 * fraction), machine=machine(notes, rows)), f"![Scaling]({link})\n",
-            of_proportion(rows), of_ranks(rows, cores), of_messages(rows, places), of_memory(rows), of_model(rows, fraction)]
+            of_proportion(rows), of_ranks(rows, cores), of_messages(rows, places), of_memory(rows), of_model(rows, fraction, cores)]
     if failed:
         text.append("Runs that failed: " + "; ".join(failed) + ".\n")
     return "\n".join(part for part in text if part)

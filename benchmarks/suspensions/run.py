@@ -5,7 +5,7 @@
 
     run.py [SCENE or GROUP ...] [--quick | --full] [--jobs N] [--ranks N] [--resume] [--draw] [--update-doc]
 
-Without names all scenes are computed, which takes hours; groups are inertia, crossing, suspension, speed. The parameter files are beside this script, results go to
+Without names all scenes are computed, which takes hours; groups are inertia, crossing, suspension, red, speed. The parameter files are beside this script, results go to
 output/suspensions/<resolution>/<scene>, figures to output/suspensions/figures, the report to output/suspensions/report.md, made of all runs that are there.
 
 doc/suspensions.md and its figures change with --update-doc only: those groups that are named, or that have a scene named, or all, as far as they have results.

@@ -54,15 +54,22 @@ def inertia(label, reynolds, **others):
     return Scene("inertia", label, "inertia_pair", {"Scene/Reynolds number": f"{reynolds:g}", **others}, finer)
 
 
-def crossing(ratio):
+def crossing(ratio, unbounded=False):
     finer = {"Fluid mesh/Finest cell": "0.15625", "Shell mesh/Level": "3"}
-    return Scene("crossing", f"λ = {ratio:g}", "crossing", {"Scene/Viscosity ratio": f"{ratio:g}"}, finer)
+    faces = {"Scene/Boundary": "unbounded", "Scene/Box side": "20, 10, 10"} if unbounded else {}
+    return Scene("crossing", f"λ = {ratio:g}" + (", unbounded liquid" if unbounded else ""), "crossing", {"Scene/Viscosity ratio": f"{ratio:g}", **faces}, finer)
 
 
-def suspension(number, percent, seed=1, reynolds=0, end=10, only="", gap=0.1, **others):
-    label = f"{number} at {percent} %" + (f", seed {seed}" if seed > 1 else "") + (f", Re = {reynolds:g}" if reynolds else "")
+def films_of(number, percent, resolution, films):
+    return {"Fluid mesh/Finest cell in gaps": f'{float(in_box(number, percent / 100, resolution)["Fluid mesh/Finest cell"]) / films:.6g}'} if films > 1 else {}
+
+
+def suspension(number, percent, seed=1, reynolds=0, end=10, only="", gap=0.1, films=1, **others):
+    """`films`: how many times smaller cells may become where shells are near each other."""
+    label = (f"{number} at {percent} %" + (f", seed {seed}" if seed > 1 else "") + (f", Re = {reynolds:g}" if reynolds else "")
+             + (f", cells down to h/{films} for films" if films > 1 else ""))
     own, finer = ({**in_box(number, percent / 100, resolution), "Capsule/Seed": str(seed), "Capsule/Least gap": f"{gap:g}", "Scene/Reynolds number": f"{reynolds:g}",
-                   "Scene/End time": f"{end:g}", **others} for resolution in RESOLUTIONS)
+                   "Scene/End time": f"{end:g}", **films_of(number, percent, resolution, films), **others} for resolution in RESOLUTIONS)
     return Scene("suspension", label, "suspension", own, finer, only)
 
 
@@ -84,12 +91,17 @@ SCENES = {
     "inertia_50_steps": inertia("Re = 50, longer steps", 12.5, **{"Time/Step": "0.4"}),
     "crossing_1": crossing(1),
     "crossing_5": crossing(5),
+    "crossing_1_unbounded": crossing(1, unbounded=True),
+    "crossing_5_unbounded": crossing(5, unbounded=True),
     **{f"random_8_{percent:02d}": suspension(8, percent, end=12, **COARSE_STEPS) for percent in (5, 10, 20, 30)},
     **{f"random_8_{percent:02d}_seed{seed}": suspension(8, percent, seed, end=12, **COARSE_STEPS) for percent in (10, 20) for seed in (2, 3)},
     **{f"random_8_{percent:02d}_inertia": suspension(8, percent, reynolds=10, end=12, **COARSE_STEPS) for percent in (10, 20)},
+    "random_8_20_seed2_films": suspension(8, 20, 2, end=12, films=4, **COARSE_STEPS),
+    "random_8_30_films": suspension(8, 30, end=12, films=4, **COARSE_STEPS),
     "random_27_10": suspension(27, 10, only="quick", gap=0.3, **COARSE_STEPS, **LONG_RUN),
     "random_27_20": suspension(27, 20, **COARSE_STEPS),
     **{f"random_64_{percent:02d}": suspension(64, percent, only="full", **COARSE_STEPS) for percent in (10, 20)},
+    "red_8_20": Scene("red", "8 at 20 %", "red_cells", {}, {}, "quick"),
     "speed_base": speed("h = 0.29", 24),
     "speed_coarse": speed("h = 0.43", 16),
     "speed_cells": speed("h = 0.22", 32, end=1),

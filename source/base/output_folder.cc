@@ -31,11 +31,18 @@ namespace tanktread
       return path.has_filename() ? path : path.parent_path();
     }
 
+    /** What every run leaves: of one capsule or very many, or of the first of several. */
+    bool
+    is_history(const fs::path &file)
+    {
+      return file.filename() == "history.csv" || file.filename() == "history_1.csv";
+    }
+
     bool
     holds_a_run(const fs::path &folder)
     {
       std::error_code error;
-      return fs::exists(folder / "history.csv", error);
+      return fs::exists(folder / "history.csv", error) || fs::exists(folder / "history_1.csv", error);
     }
 
     /** A run has no folders inside; what has a run further down is somebody's collection of runs. */
@@ -43,7 +50,7 @@ namespace tanktread
     holds_nothing_but_a_run(const fs::path &folder)
     {
       for (const auto &entry : fs::recursive_directory_iterator(folder))
-        if (entry.path().filename() == "history.csv" && entry.path().parent_path() != folder)
+        if (is_history(entry.path()) && entry.path().parent_path() != folder)
           return false;
       return holds_a_run(folder);
     }

@@ -2,10 +2,10 @@
 // Part of Tanktread: what unit pressure jumps at the shells do to the liquid, for the preconditioner.
 
 #include <tanktread/fluid/linear_solver.h>
+#include <tanktread/fluid/nearest_point.h>
 #include <tanktread/solver/pressure_jump_response.h>
 
 #include <cmath>
-#include <limits>
 
 namespace tanktread
 {
@@ -58,7 +58,6 @@ namespace tanktread
       return;
     const NodeSpace              &p       = *space.pressure;
     const std::vector<double>     corners = lower_corners(space);
-    const Box                    &box     = space.mesh.box();
     std::vector<dealii::Point<3>> centres;
     std::vector<double>           own_means;
     for (const auto &shell : coupling.shells())
@@ -67,17 +66,7 @@ namespace tanktread
     const std::vector<double> means = layout_.gathered(own_means, 3);
     for (std::size_t c = 0; c < means.size(); c += 3)
       centres.emplace_back(means[c], means[c + 1], means[c + 2]);
-    const auto nearest = [&](const dealii::Point<3> &x) {
-      unsigned int result = 0;
-      double       least  = std::numeric_limits<double>::infinity();
-      for (unsigned int c = 0; c < centres.size(); ++c)
-        if (const double square = box.wrapped(dealii::Point<3>(x - centres[c])).square(); square < least)
-          {
-            least  = square;
-            result = c;
-          }
-      return result;
-    };
+    const NearestPoint nearest(centres, space.mesh.box());
     capsule_of_node_.assign(p.n_owned(), 0);
     for (unsigned int cell = 0; cell < p.n_cells(); ++cell)
       for (unsigned int j = 0; j < 8; ++j)

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <tanktread/fluid/nearest_point.h>
 #include <tanktread/solver/unbounded_liquid.h>
 #include <tanktread/surface/rigid_motion.h>
 
@@ -142,14 +143,15 @@ namespace tanktread
   UnboundedLiquid::add_missing(const FluidBlockVector &fields, const std::vector<Multipoles> &of_points, Columns &on_faces)
   {
     uniform_.vmult(loads_, fields);
-    std::vector<double> sums(12 * of_points.size(), 0.); // of the nodes nearest to each capsule: moments and forces
+    std::vector<double>           sums(12 * of_points.size(), 0.); // of the nodes nearest to each capsule: moments and forces
+    std::vector<dealii::Point<3>> centres;
+    for (const Multipoles &of_capsule : of_points)
+      centres.emplace_back(of_capsule.centre[0], of_capsule.centre[1], of_capsule.centre[2]);
+    const NearestPoint nearest_to(centres, space_.mesh.box());
     for (std::size_t i = 0; i < near_.size(); ++i)
       {
         const Eigen::RowVector3d y(near_places_[0][i], near_places_[1][i], near_places_[2][i]);
-        std::size_t              nearest = 0;
-        for (std::size_t c = 1; c < of_points.size(); ++c)
-          if ((y - of_points[c].centre).squaredNorm() < (y - of_points[nearest].centre).squaredNorm())
-            nearest = c;
+        const std::size_t        nearest = nearest_to({y[0], y[1], y[2]});
         for (unsigned int d = 0; d < 3; ++d)
           {
             const double load = loads_.block(velocity_block).local_element(3 * near_[i] + d);

@@ -67,6 +67,11 @@ TEST(OutputFolder, FormerRunIsMovedAside)
       write(folder / "history.csv", run);
     }
   EXPECT_EQ(contents(folder.string() + ".previous/history.csv"), "2");
+  // One of several capsules has no history.csv.
+  fs::remove(folder / "history.csv");
+  write(folder / "history_1.csv", "4");
+  EXPECT_EQ(prepare_output_folder(folder.string()), folder.string() + ".previous");
+  EXPECT_EQ(contents(folder.string() + ".previous/history_1.csv"), "4");
 }
 
 TEST(OutputFolder, FolderThatIsNoRunStays)

@@ -3,7 +3,10 @@
 
 #include <tanktread/base/exceptions.h>
 #include <tanktread/fluid/field_transfer.h>
+#include <tanktread/fluid/nearest_point.h>
 #include <tanktread/fluid/point_interpolation.h>
+
+#include <random>
 
 #include "full_arrays.h"
 #include "nodal_velocity.h"
@@ -220,5 +223,33 @@ TEST(StokesInBricks, PointsAtUpperFaces)
               outside[d] = sign * 0.5 * box.side[d];
               EXPECT_THROW(interpolation.reinit({outside}), NumericalError);
             }
+    }
+}
+
+
+TEST(Box, NearestPointIsThatOfTheNearestImage)
+{
+  std::mt19937                           random(5);
+  std::uniform_real_distribution<double> uniform(-1., 1.);
+  for (const Box &box : {closed_brick, brick_along_z, brick_along_yz})
+    {
+      const auto anywhere = [&] {
+        return Point(0.5 * box.side[0] * uniform(random), 0.5 * box.side[1] * uniform(random), 0.5 * box.side[2] * uniform(random));
+      };
+      std::vector<Point> points;
+      for (unsigned int p = 0; p < 20; ++p)
+        points.push_back(anywhere());
+      if (box.is_periodic(2))
+        points[3][2] += 3. * box.side[2]; // anywhere along it
+      const NearestPoint nearest(points, box);
+      for (unsigned int trial = 0; trial < 200; ++trial)
+        {
+          const Point  x     = anywhere();
+          unsigned int found = 0;
+          for (unsigned int p = 1; p < points.size(); ++p)
+            if (box.wrapped(Point(x - points[p])).norm() < box.wrapped(Point(x - points[found])).norm())
+              found = p;
+          EXPECT_EQ(nearest(x), found);
+        }
     }
 }
