@@ -70,7 +70,7 @@ namespace tanktread
     return "usage: tanktread [options] FILE.prm\n"
            "       mpirun -np N tanktread [options] FILE.prm\n"
            "\n"
-           "Computes the motion of a liquid capsule enclosed by an elastic shell in Stokes flow.\n"
+           "Computes the motion of liquid capsules enclosed by thin elastic shells in viscous flow.\n"
            "\n"
            "  --set \"Section/Parameter=value\"    set a parameter; wins over the file; may be repeated\n"
            "  --validate                         check everything, compute nothing\n"

@@ -55,23 +55,27 @@ namespace tanktread
   void
   KindParameters::add_parameters(dealii::ParameterHandler &prm)
   {
-    using dealii::Patterns::Double;
     prm.enter_subsection(section);
     shape.add_parameters(prm);
     placement.add_parameters(prm);
     shell.add_parameters(prm);
+    prm.leave_subsection();
     if (!is_first())
-      {
-        prm.add_parameter("Size",
-                          shape.size,
-                          "Radius of the sphere with the volume of a capsule of this kind, in a, that of the first kind.",
-                          Double(0.01, 100.));
-        prm.add_parameter("Young modulus factor",
-                          young_modulus_factor,
-                          "E h of this kind over that which 'Shear number G' says.",
-                          Double(std::numeric_limits<double>::min()));
-        prm.add_parameter("Bending modulus factor", bending_modulus_factor, "kappa_B of this kind over that which 'Reduced bending modulus' says.", Double(0.));
-      }
+      add_further_parameters(prm);
+  }
+
+
+  void
+  KindParameters::add_further_parameters(dealii::ParameterHandler &prm)
+  {
+    using dealii::Patterns::Double;
+    prm.enter_subsection(section);
+    prm.add_parameter("Size", shape.size, "Radius of the sphere with the volume of a capsule of this kind, in a, that of the first kind.", Double(0.01, 100.));
+    prm.add_parameter("Young modulus factor",
+                      young_modulus_factor,
+                      "E h of this kind over that which 'Shear number G' says.",
+                      Double(std::numeric_limits<double>::min()));
+    prm.add_parameter("Bending modulus factor", bending_modulus_factor, "kappa_B of this kind over that which 'Reduced bending modulus' says.", Double(0.));
     prm.leave_subsection();
   }
 

@@ -122,6 +122,17 @@ namespace tanktread
         set(prm, "Output", "Directory", "output/" + file.stem().string());
     }
 
+    /** Every line behind a "# ". */
+    std::string
+    commented(const std::string &text)
+    {
+      std::istringstream lines(text);
+      std::string        result;
+      for (std::string line; std::getline(lines, line);)
+        result += "# " + line + "\n";
+      return result;
+    }
+
     void
     set_places(dealii::ParameterHandler &prm, const std::string &section, const std::vector<Place> &places)
     {
@@ -358,6 +369,14 @@ namespace tanktread
     Parameters               parameters;
     dealii::ParameterHandler prm;
     parameters.add_parameters(prm);
-    return as_markdown ? parameters_as_markdown(prm) : parameters_as_prm(prm);
+    // What sections of further kinds have beside; they are not to be read unless they are wanted.
+    KindParameters           further(1);
+    dealii::ParameterHandler further_prm;
+    further.add_further_parameters(further_prm);
+    const std::string about =
+      "Further kinds of capsules: sections Capsule 2, Capsule 3, ..., in which what is not set is as in Capsule, but for their places. Beside the parameters of Capsule these have";
+    if (as_markdown)
+      return parameters_as_markdown(prm) + "\n" + about + "\n\n" + parameters_as_markdown(further_prm);
+    return parameters_as_prm(prm) + "\n# " + about + "\n" + commented(parameters_as_prm(further_prm));
   }
 } // namespace tanktread

@@ -124,6 +124,16 @@ TEST(Kinds, AreTheSameWhenReadAgain)
 }
 
 
+TEST(Kinds, AreToldAmongTheDefaults)
+{
+  const std::string text = default_parameters(false);
+  expect(text, "# subsection Capsule 2\n");
+  expect(text, "#   set Young modulus factor = 1\n");
+  EXPECT_EQ(read(text).kinds.size(), 1u);
+  expect(default_parameters(true), "| Size | 1 |");
+}
+
+
 TEST(Kinds, WrongOnesAreRefused)
 {
   expect(error_of("subsection Capsule 3\nset Centres = 3, 0, 0\nend\n"),

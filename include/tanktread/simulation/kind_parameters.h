@@ -40,6 +40,10 @@ namespace tanktread
     void
     add_parameters(dealii::ParameterHandler &prm);
 
+    /** Those alone that the first kind has not. */
+    void
+    add_further_parameters(dealii::ParameterHandler &prm);
+
     /** Throws InputError, about this section, where one of the members does. */
     void
     check() const;
