@@ -264,7 +264,7 @@ class Calls(unittest.TestCase):
         self.assertEqual(self.call("proportion", "weak", "strong", "memory")[0], 0)
         self.assertEqual(self.doc(), before)
         page = (self.root / "output/scaling/scaling.md").read_text()
-        self.assertIn("| 8 | 11200 | 0.88 | 0.11 | 1.00 | 2.0, 8.0 | 280 | 35 |", page)
+        self.assertIn("| 8 | 11200 | 0.88 | 0.11 | 1.00 | 2.0, 8.0 | 14 | 280 | 35 |", page)
         self.assertIn("| 4 | 8 | 11200 | 0.28 | 0.28 | 79 % | ", page)  # (0.2 + 0.02) / (0.2 + 0.08)
         self.assertIn("100 ms × N/P + 10 ms × N + 0 ms", page)
         code, said = self.call("--draw", "--update-doc")
