@@ -64,6 +64,20 @@ namespace tanktread
     }
 
 
+    TANKTREAD_CLONES void
+    add_rotlet(const Vector &X, const Vector &T, const Targets &t)
+    {
+      for (std::size_t i = 0; i < t.n; ++i)
+        {
+          const double x = t.x[i] - X[0], y = t.y[i] - X[1], z = t.z[i] - X[2];
+          const double square = x * x + y * y + z * z, factor = 1. / (square * std::sqrt(square));
+          t.u[i] += factor * (T[1] * z - T[2] * y);
+          t.v[i] += factor * (T[2] * x - T[0] * z);
+          t.w[i] += factor * (T[0] * y - T[1] * x);
+        }
+    }
+
+
     /** Calls add(q, targets) for all sources and pieces of the targets, and adds factor times the sums to `velocity`. */
     template <typename Add>
     void
@@ -100,5 +114,12 @@ namespace tanktread
     add_sums(X[0].size(), 6. * factor * over_eight_pi, x, velocity, [&](const std::size_t q, const Targets &targets) {
       add_stresslet(row(X, q), row(u, q), row(a, q), targets);
     });
+  }
+
+
+  void
+  add_rotlets(const Columns &X, const Columns &T, const Columns &x, Columns &velocity)
+  {
+    add_sums(X[0].size(), over_eight_pi, x, velocity, [&](const std::size_t q, const Targets &targets) { add_rotlet(row(X, q), row(T, q), targets); });
   }
 } // namespace tanktread

@@ -72,6 +72,24 @@ namespace tanktread
 
 
     double
+    largest_size(const Parameters &parameters)
+    {
+      double result = parameters.kinds[0].shape.size;
+      for (const KindParameters &kind : parameters.kinds)
+        result = std::max(result, kind.shape.size);
+      return result;
+    }
+
+
+    /** Whether Shell mesh/Level is read for a kind. */
+    bool
+    has_level(const Parameters &parameters)
+    {
+      return std::any_of(parameters.kinds.begin(), parameters.kinds.end(), [](const KindParameters &kind) { return kind.shape.shape != Shape::file; });
+    }
+
+
+    double
     cells_error(const Parameters &parameters, double h)
     {
       h /= smallest_size(parameters);
@@ -100,6 +118,8 @@ namespace tanktread
       double rim = 1.; // flat shapes are curved more sharply
       for (const KindParameters &kind : parameters.kinds)
         {
+          if (kind.shape.shape == Shape::file)
+            continue;
           const Eigen::Vector3d length = initial_lengths(kind);
           rim                          = std::max(rim, std::pow(length[2] / length[0] / 1.5, 2.));
         }
@@ -317,7 +337,7 @@ namespace tanktread
       }
     if (ungraded_far_cells > 0.5 * of_cells * target)
       choose("Fluid mesh", "Grading", "3");
-    if (!parameters.has_mesh_file())
+    if (has_level(parameters))
       {
         // Where a membrane without bending stiffness is compressed it wrinkles, on a finer control mesh the more.
         const int finest = parameters.bends() ? 5 : 2;
@@ -331,11 +351,13 @@ namespace tanktread
     if (!source.is_set("Time/Step") && std::isfinite(factor_of_scheme(parameters)))
       {
         choose("Time", "Step", "1");
-        choose("Time", "Tolerance", number_text(of_steps * target * D / (steps_factor * factor_of_scheme(parameters) * memory_of_shape(parameters))));
+        choose("Time",
+               "Tolerance",
+               number_text(of_steps * target * D * smallest_size(parameters) / (steps_factor * factor_of_scheme(parameters) * memory_of_shape(parameters))));
       }
     if (!source.is_set("Time/Steady tolerance") && parameters.scene.oscillation_frequency == 0. && stays_in_the_middle(parameters))
       choose("Time", "Limit tolerance", number_text(of_stop * target));
-    const double newton = std::clamp(of_newton * target * D / (newton_factor * memory_of_shape(parameters)), 1e-7, 1e-2);
+    const double newton = std::clamp(of_newton * target * D * smallest_size(parameters) / (newton_factor * memory_of_shape(parameters)), 1e-7, 1e-2);
     choose("Solver", "Newton tolerance", number_text(newton));
     choose("Solver", "Volume tolerance", number_text(std::min(1e-3, 0.01 * newton)));
     return result;
@@ -353,17 +375,18 @@ namespace tanktread
         result.push_back({"cells", cells_error(parameters, h), std::pow(2., 2.3 / order)});
       }
     result.push_back({"cells away from the shell", parameters.fluid_mesh.grading < 3 ? ungraded_far_cells : graded_far_cells, 1.2});
-    if (!parameters.has_mesh_file())
+    if (has_level(parameters))
       result.push_back({"control mesh", control_mesh_error(parameters, parameters.shell_mesh.level), 1.2});
     if (parameters.time.tolerance > 0. && std::isfinite(factor_of_scheme(parameters)))
       result.push_back({"steps",
-                        steps_factor * factor_of_scheme(parameters) * memory_of_shape(parameters) * parameters.time.tolerance / D,
+                        steps_factor * factor_of_scheme(parameters) * memory_of_shape(parameters) * parameters.time.tolerance / (D * smallest_size(parameters)),
                         std::pow(2., 1. / order(parameters.time.scheme))});
-    result.push_back({"Newton tolerance", newton_factor * memory_of_shape(parameters) * parameters.solver.newton_tolerance / D, 1.05});
+    result.push_back(
+      {"Newton tolerance", newton_factor * memory_of_shape(parameters) * parameters.solver.newton_tolerance / (D * smallest_size(parameters)), 1.05});
     if (parameters.scene.boundary == Boundary::faces)
       {
         const double side = *std::min_element(parameters.scene.box_side.begin(), parameters.scene.box_side.end());
-        result.push_back({"box (against unbounded liquid)", faces_factor / std::pow(side, 3.), 1.2});
+        result.push_back({"box (against unbounded liquid)", faces_factor * std::pow(largest_size(parameters) / side, 3.), 1.2});
       }
     if (parameters.time.limit_tolerance > 0.)
       result.push_back({"stop", parameters.time.limit_tolerance, 1.05});

@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <regex>
 #include <set>
 #include <sstream>
 
@@ -25,6 +24,12 @@ namespace tanktread
     section_of_kind(const unsigned int number)
     {
       return number == 0 ? first_section : first_section + " " + std::to_string(number + 1);
+    }
+
+    bool
+    is_number(const std::string &word)
+    {
+      return !word.empty() && word.size() <= 6 && word.find_first_not_of("0123456789") == std::string::npos;
     }
 
     /** What says where capsules are: each kind has its own. */
@@ -81,10 +86,10 @@ namespace tanktread
 
 
   std::string
-  KindParameters::in_section(std::string message) const
+  in_section(const std::string &section, std::string message)
   {
     const std::string old = first_section + "/", in_its_place = section + "/";
-    for (std::size_t at = message.find(old); !is_first() && at != std::string::npos; at = message.find(old, at + in_its_place.size()))
+    for (std::size_t at = message.find(old); section != first_section && at != std::string::npos; at = message.find(old, at + in_its_place.size()))
       message.replace(at, old.size(), in_its_place);
     return message;
   }
@@ -109,17 +114,24 @@ namespace tanktread
   unsigned int
   number_of_kinds(const std::string &text, const std::string &file_name, const std::vector<std::string> &overrides)
   {
-    static const std::regex             in_file("^\\s*subsection\\s+Capsule\\s+(\\d{1,6})\\s*(#.*)?$"), in_override("^\\s*Capsule\\s+(\\d{1,6})\\s*/.*$");
     std::map<unsigned int, std::string> places;
     std::istringstream                  lines(text);
-    std::smatch                         match;
     unsigned int                        n = 0;
     for (std::string line; std::getline(lines, line);)
-      if (++n; std::regex_match(line, match, in_file))
-        places.emplace(std::stoul(match[1]), file_name + ":" + std::to_string(n));
+      {
+        ++n;
+        std::istringstream words(line.substr(0, line.find('#')));
+        std::string        subsection, section, number, further;
+        if (words >> subsection >> section >> number && subsection == "subsection" && section == first_section && is_number(number) && !(words >> further))
+          places.emplace(std::stoul(number), file_name + ":" + std::to_string(n));
+      }
     for (const std::string &setting : overrides)
-      if (std::regex_match(setting, match, in_override))
-        places.emplace(std::stoul(match[1]), "--set \"" + setting + "\"");
+      {
+        std::istringstream words(setting.substr(0, setting.find('/')));
+        std::string        section, number, further;
+        if (words >> section >> number && section == first_section && is_number(number) && !(words >> further))
+          places.emplace(std::stoul(number), "--set \"" + setting + "\"");
+      }
     unsigned int expected = 2;
     for (const auto &[number, place] : places)
       if (number != expected++)

@@ -7,7 +7,7 @@
 #include <tanktread/base/parameter_file.h>
 #include <tanktread/base/parameter_table.h>
 #include <tanktread/simulation/parameters.h>
-#include <tanktread/simulation/random_places.h>
+#include <tanktread/simulation/place_capsules.h>
 #include <tanktread/simulation/scene_description.h>
 
 #include <deal.II/base/parameter_handler.h>
@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <sstream>
+#include <utility>
 
 namespace tanktread
 {
@@ -122,6 +123,15 @@ namespace tanktread
         set(prm, "Output", "Directory", "output/" + file.stem().string());
     }
 
+    void
+    note_values(const dealii::ParameterHandler &prm, Parameters &parameters)
+    {
+      parameters.used = parameters_as_prm(prm);
+      parameters.values.clear();
+      for (const ParameterInfo &parameter : parameter_table(prm))
+        parameters.values.push_back({parameter.section, parameter.name, parameter.value});
+    }
+
     /** Every line behind a "# ". */
     std::string
     commented(const std::string &text)
@@ -131,70 +141,6 @@ namespace tanktread
       for (std::string line; std::getline(lines, line);)
         result += "# " + line + "\n";
       return result;
-    }
-
-    void
-    set_places(dealii::ParameterHandler &prm, const std::string &section, const std::vector<Place> &places)
-    {
-      const auto [centres, rotations] = as_lists(places);
-      set(prm, section, "Placement", "list");
-      set(prm, section, "Centres", centres);
-      set(prm, section, "Rotations", rotations);
-    }
-
-    /** Makes lists of places of files. */
-    void
-    read_places_files(dealii::ParameterHandler &prm, const Parameters &parameters, const ParameterSource &source)
-    {
-      for (const KindParameters &kind : parameters.kinds)
-        if (kind.placement.placement == Placement::file)
-          try
-            {
-              set_places(prm, kind.section, read_places(kind.placement.file));
-            }
-          catch (const InputError &error)
-            {
-              throw InputError(source.locate(kind.in_section(error.what())));
-            }
-    }
-
-    /** Makes lists of random places, of all kinds that have such together. */
-    void
-    choose_random_places(dealii::ParameterHandler &prm, const Parameters &parameters, const ParameterSource &source)
-    {
-      const Box                 box      = parameters.scene.box();
-      const double              face_gap = parameters.scene.boundary == Boundary::unbounded ? UnboundedLiquid::least_distance : 0.;
-      const PlacementParameters first    = parameters.kinds[0].placement;
-      std::vector<KindInPlace>  kinds;
-      std::string               wanted_by; // the parameter that asks for random places first
-      for (const KindParameters &kind : parameters.kinds)
-        {
-          const PlacementParameters &placement = kind.placement;
-          const bool                 is_random = placement.placement == Placement::random;
-          // Random places do not depend on the control mesh: the shape's points on a coarse one are enough.
-          kinds.push_back({make_capsule(kind.shape, 2),
-                           is_random ? placement.number_in(box.volume(), kind.shape.size) : 0,
-                           placement.turned,
-                           is_random ? std::vector<Place>() : placement.places()});
-          if (is_random && wanted_by.empty())
-            wanted_by = kind.section + (placement.number > 0 ? "/Number: " : "/Volume fraction: ");
-          if (is_random && (placement.seed != first.seed || placement.least_gap != first.least_gap))
-            throw InputError(source.locate(kind.section + (placement.seed != first.seed ? "/Seed" : "/Least gap") +
-                                           " is not that of section Capsule; allowed: that one, since all capsules are placed together."));
-        }
-      if (wanted_by.empty())
-        return;
-      try
-        {
-          const auto places = random_places({first.seed, first.least_gap, std::max(first.least_gap, face_gap)}, kinds, box);
-          for (std::size_t k = 0; k < kinds.size(); ++k)
-            if (parameters.kinds[k].placement.placement == Placement::random)
-              set_places(prm, parameters.kinds[k].section, places[k]);
-        }
-      catch (const InputError &error)
-        {
-          throw InputError(source.locate(wanted_by + error.what()));
-        }
     }
   } // namespace
 
@@ -337,13 +283,17 @@ namespace tanktread
     for (const Choice &choice : parameters.choices)
       set(prm, choice.section, choice.name, choice.value);
     if (is_sound && scene_is_sound(parameters))
-      {
-        read_places_files(prm, parameters, source);
-        choose_random_places(prm, parameters, source);
-      }
+      place_capsules(prm, parameters, source);
     parameters.check(source, unreadable);
-    parameters.used = parameters_as_prm(prm);
+    note_values(prm, parameters);
     return parameters;
+  }
+
+  void
+  set_values(dealii::ParameterHandler &prm, const std::vector<Choice> &values)
+  {
+    for (const Choice &value : values)
+      set(prm, value.section, value.name, value.value);
   }
 
   Parameters
@@ -352,14 +302,15 @@ namespace tanktread
     Parameters               result(parameters.kinds.size());
     dealii::ParameterHandler prm;
     result.add_parameters(prm);
-    const ParameterSource source = read_parameter_text(prm, parameters.used, parameters.file, settings);
+    set_values(prm, parameters.values);
+    const ParameterSource source = read_parameter_text(prm, "", parameters.file, settings);
     result.file                  = parameters.file;
     result.choices               = parameters.choices;
     for (std::size_t k = 0; k < result.kinds.size(); ++k)
       if (result.kinds[k].shape.file == parameters.kinds[k].shape.file)
         result.kinds[k].shape.mesh = parameters.kinds[k].shape.mesh;
     result.check(source);
-    result.used = parameters_as_prm(prm);
+    note_values(prm, result);
     return result;
   }
 

@@ -70,7 +70,7 @@ namespace tanktread
       "How each of the capsules is turned about its centre beyond Inclination: vectors along the axis, as long as the angle in units of pi. Empty: not at all.",
       List(List(Double(), 3, 3, ","), 0, 1000000, ";"));
     prm.add_parameter("Places file", file, "File with a line x y z for each capsule, or x y z and the three numbers of its rotation.", FileName());
-    prm.add_parameter("Number", number, "Capsules placed at random; 0: as many as Volume fraction says.", Integer(0, 1000000));
+    prm.add_parameter("Number", number, "Capsules placed at random; 0: as many as Volume fraction says.", Integer(0, most_at_random));
     prm.add_parameter("Volume fraction", volume_fraction, "Volume of the capsules placed at random over that of the box; 0: as Number says.", Double(0., 1.));
     prm.add_parameter("Seed", seed, "What the random places begin with: another number, other places.", Integer(0));
     prm.add_parameter("Random orientations", turned, "Whether capsules placed at random are turned at random too.");
@@ -111,8 +111,10 @@ namespace tanktread
   unsigned int
   PlacementParameters::number_in(const double volume, const double size) const
   {
-    const double of_one = 4. / 3. * M_PI * size * size * size;
-    return number > 0 ? number : std::max(1u, static_cast<unsigned int>(std::lround(volume_fraction * volume / of_one)));
+    const double wanted = number > 0 ? number : std::round(volume_fraction * volume / (4. / 3. * M_PI * size * size * size));
+    if (wanted > most_at_random)
+      throw InputError(std::to_string(std::llround(wanted)) + " capsules at random places; allowed: " + std::to_string(most_at_random) + " at most.");
+    return std::max(1u, static_cast<unsigned int>(wanted));
   }
 
 

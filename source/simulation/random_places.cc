@@ -117,14 +117,17 @@ namespace tanktread
               images_.emplace_back(i * box_.side[0], j * box_.side[1], k * box_.side[2]);
       }
 
-      /** Whether all capsules and the gaps around them would be too much for the box; known of spheres. */
+      /** Whether all capsules and the gaps around them would be too much for the box; known of spheres of one size. */
       bool
       is_full() const
       {
         double volume = 0.;
         for (unsigned int k = 0; k < kinds_.size(); ++k)
-          if (clouds_[k].is_sphere)
+          {
+            if (!clouds_[k].is_sphere || std::abs(clouds_[k].radius - clouds_[0].radius) > 1e-3 * clouds_[0].radius)
+              return false;
             volume += (kinds_[k].number + kinds_[k].fixed.size()) * std::pow(2. * clouds_[k].radius + wanted_.least_gap, 3) * M_PI / 6.;
+          }
         return volume > densest * box_.volume();
       }
 

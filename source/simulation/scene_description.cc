@@ -33,8 +33,15 @@ namespace tanktread
       for (const KindParameters &of_kind : parameters.kinds)
         {
           CapsuleKind kind;
-          kind.shape            = make_capsule(of_kind.shape, std::min(parameters.shell_mesh.level, max_level));
-          kind.stress_free      = make_stress_free_shape(of_kind.shape, kind.shape);
+          try
+            {
+              kind.shape       = make_capsule(of_kind.shape, std::min(parameters.shell_mesh.level, max_level));
+              kind.stress_free = make_stress_free_shape(of_kind.shape, kind.shape);
+            }
+          catch (const InputError &error)
+            {
+              throw InputError((of_kind.shape.shape == Shape::file ? of_kind.section + "/Mesh file: " : "") + of_kind.in_section(error.what()));
+            }
           kind.shell            = of_kind.shell;
           kind.moduli           = parameters.moduli(of_kind);
           kind.shell_quadrature = parameters.shell_mesh.quadrature;
@@ -82,7 +89,14 @@ namespace tanktread
       ShellConfigurations                         shells;
       std::array<double, 3>                       periods, half_sides;
       for (const CapsuleKind &kind : scene.kinds)
-        kinds.push_back(std::make_unique<Capsule>(kind.shape, rule, kind.shell, kind.moduli, kind.stress_free));
+        try
+          {
+            kinds.push_back(std::make_unique<Capsule>(kind.shape, rule, kind.shell, kind.moduli, kind.stress_free));
+          }
+        catch (const InputError &error)
+          {
+            throw InputError(in_section(sections[kinds.size()], error.what()));
+          }
       for (unsigned int c = 0; c < scene.places.size(); ++c)
         {
           const Capsule &capsule = *kinds[scene.kind_of[c]];
@@ -94,17 +108,18 @@ namespace tanktread
           half_sides[d] = scene.box.is_periodic(d) ? std::numeric_limits<double>::infinity() : 0.5 * scene.box.side[d];
         }
       std::ostringstream message;
-      if (const double distance = smallest_distance_from_faces(shells, half_sides); distance <= 0.)
+      for (unsigned int c = 0; c < shells.size(); ++c)
         {
-          message << "Capsule/Centres: a capsule reaches " << -distance << " a beyond a face of the box with prescribed velocity; allowed: inside.";
-          throw InputError(message.str());
-        }
-      else if (scene.liquids.unbounded && distance < UnboundedLiquid::least_distance)
-        {
-          message << "Capsule/Centres: a capsule is " << distance
-                  << " a from a face of the box; allowed with Scene/Boundary = unbounded: " << UnboundedLiquid::least_distance
-                  << " a or more (Scene/Box side).";
-          throw InputError(message.str());
+          const double distance = smallest_distance_from_faces({shells[c]}, half_sides);
+          if (distance <= 0.)
+            message << sections[scene.kind_of[c]] << "/Centres: a capsule reaches " << -distance
+                    << " a beyond a face of the box with prescribed velocity; allowed: inside.";
+          else if (scene.liquids.unbounded && distance < UnboundedLiquid::least_distance)
+            message << sections[scene.kind_of[c]] << "/Centres: a capsule is " << distance
+                    << " a from a face of the box; allowed with Scene/Boundary = unbounded: " << UnboundedLiquid::least_distance
+                    << " a or more (Scene/Box side).";
+          if (!message.str().empty())
+            throw InputError(message.str());
         }
       if (const ShellGap smallest = smallest_gap(shells, periods, 4. * h); smallest.gap <= 0.)
         {

@@ -5,7 +5,6 @@
 #include <deal.II/base/parameter_handler.h>
 
 #include <tanktread/base/mpi_errors.h>
-#include <tanktread/base/parameter_file.h>
 #include <tanktread/simulation/shared_parameters.h>
 
 #include <boost/serialization/array.hpp>
@@ -23,7 +22,7 @@ namespace tanktread
     struct Sent
     {
       std::string                             file, used;
-      std::vector<std::array<std::string, 3>> choices;
+      std::vector<std::array<std::string, 3>> choices, values;
       std::vector<std::vector<double>>        vertices; // of the mesh file of each kind, empty without one
       std::vector<std::vector<int>>           faces;
 
@@ -31,17 +30,35 @@ namespace tanktread
       void
       serialize(Archive &archive, const unsigned int)
       {
-        archive &file &used &choices &vertices &faces;
+        archive &file &used &choices &values &vertices &faces;
       }
     };
+
+
+    std::vector<std::array<std::string, 3>>
+    strings(const std::vector<Choice> &choices)
+    {
+      std::vector<std::array<std::string, 3>> result;
+      for (const Choice &choice : choices)
+        result.push_back({{choice.section, choice.name, choice.value}});
+      return result;
+    }
+
+
+    std::vector<Choice>
+    choices(const std::vector<std::array<std::string, 3>> &strings)
+    {
+      std::vector<Choice> result;
+      for (const auto &[section, name, value] : strings)
+        result.push_back({section, name, value});
+      return result;
+    }
 
 
     Sent
     sent(const Parameters &parameters)
     {
-      Sent result{parameters.file, parameters.used, {}, {}, {}};
-      for (const Choice &choice : parameters.choices)
-        result.choices.push_back({{choice.section, choice.name, choice.value}});
+      Sent result{parameters.file, parameters.used, strings(parameters.choices), strings(parameters.values), {}, {}};
       for (const KindParameters &kind : parameters.kinds)
         {
           result.vertices.emplace_back();
@@ -63,11 +80,11 @@ namespace tanktread
       Parameters               result(sent.vertices.size());
       dealii::ParameterHandler prm;
       result.add_parameters(prm);
-      read_parameter_text(prm, sent.used, sent.file);
-      result.file = sent.file;
-      result.used = sent.used;
-      for (const auto &[section, name, value] : sent.choices)
-        result.choices.push_back({section, name, value});
+      result.values = choices(sent.values);
+      set_values(prm, result.values); // not from the text, in which "#" begins a comment
+      result.file    = sent.file;
+      result.used    = sent.used;
+      result.choices = choices(sent.choices);
       for (std::size_t k = 0; k < result.kinds.size(); ++k)
         if (const std::vector<double> &x = sent.vertices[k]; !x.empty())
           {

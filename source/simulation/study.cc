@@ -6,6 +6,7 @@
 #include <tanktread/base/exceptions.h>
 #include <tanktread/base/mpi_errors.h>
 #include <tanktread/base/output_file.h>
+#include <tanktread/simulation/shared_parameters.h>
 #include <tanktread/simulation/simulation.h>
 #include <tanktread/simulation/study.h>
 
@@ -87,7 +88,7 @@ namespace tanktread
             of_run.push_back(change);
         try
           {
-            parameters_.push_back(read_parameters(parameters.file, of_run));
+            parameters_.push_back(run.coarser.empty() ? parameters : read_shared_parameters(parameters.file, of_run, communicator));
           }
         catch (const InputError &error)
           {

@@ -168,6 +168,12 @@ namespace tanktread
         result.push_back("Output/Directory=" + parameters.output.directory + "/study/" + run.name());
         result.push_back("Output/Field interval=0");
       }
+    for (const KindParameters &kind : parameters.kinds)
+      if (kind.has_random_places) // another box would give others
+        {
+          const auto [centres, rotations] = as_lists(kind.placement.places());
+          result.insert(result.end(), {kind.section + "/Placement=list", kind.section + "/Centres=" + centres, kind.section + "/Rotations=" + rotations});
+        }
     for (const auto &[cause, n] : run.coarser)
       {
         if (cause == Cause::mesh || cause == Cause::cells)

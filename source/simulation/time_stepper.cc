@@ -230,7 +230,9 @@ namespace tanktread
   double
   TimeStepper::longest_start(const State &state) const
   {
-    constexpr double farthest = 0.1; // a
+    double farthest = 0.1; // a, or of the radius of smaller capsules
+    for (unsigned int k = 0; k < scene_.capsules().n_kinds(); ++k)
+      farthest = std::min(farthest, 0.1 * std::cbrt(3. / (4. * M_PI) * scene_.capsules().kind(k).volume()));
     if (parameters_.tolerance == 0. || !memory_.previous.empty())
       return std::numeric_limits<double>::infinity();
     const ShellFields velocity    = scene_.level().shell_velocity(state);

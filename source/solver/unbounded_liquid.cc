@@ -26,6 +26,14 @@ namespace tanktread
     }
 
 
+    /** Sum of x cross f for the sum of x f^T. */
+    Eigen::RowVector3d
+    torque_of(const Eigen::Matrix3d &moment)
+    {
+      return {moment(1, 2) - moment(2, 1), moment(2, 0) - moment(0, 2), moment(0, 1) - moment(1, 0)};
+    }
+
+
     Eigen::Matrix3d
     symmetric_without_trace(const Eigen::Matrix3d &tensor)
     {
@@ -129,10 +137,11 @@ namespace tanktread
               continue;
             const ControlPoints &U = of_capsule[2], &v = of_capsule[3];
             add_double_layer(columns(x), columns(U), columns(v), 1. - viscosity_ratio_, faces_.places(), on_faces);
-            result[c].centre = x.colwise().mean();
-            result[c].force  = force.colwise().sum();
-            result[c].stresslet =
-              symmetric_without_trace(-(x.rowwise() - result[c].centre).transpose() * force - 2. * (1. - viscosity_ratio_) * U.transpose() * v);
+            result[c].centre             = x.colwise().mean();
+            result[c].force              = force.colwise().sum();
+            const Eigen::Matrix3d moment = (x.rowwise() - result[c].centre).transpose() * force;
+            result[c].torque             = torque_of(moment);
+            result[c].stresslet          = symmetric_without_trace(-moment - 2. * (1. - viscosity_ratio_) * U.transpose() * v);
           }
       }
     return result;
@@ -168,11 +177,12 @@ namespace tanktread
         // A stresslet S as a double layer of its columns at one point: -3/(8 pi) y (y . S y)/|y|^5.
         const ControlPoints missing = symmetric_without_trace(-moment) - of_points[c].stresslet, unit_vectors = Eigen::Matrix3d::Identity();
         add_double_layer(columns(of_points[c].centre.replicate(3, 1)), columns(missing), columns(unit_vectors), -0.5, faces_.places(), on_faces);
-        if (of_points.size() > 1)
-          add_stokeslets(centre,
-                         columns(Eigen::RowVector3d(Eigen::Map<const Eigen::RowVector3d>(&sums[12 * c + 9]) - of_points[c].force)),
-                         faces_.places(),
-                         on_faces);
+        if (of_points.size() == 1)
+          continue; // nothing is taken for another one's
+        const Eigen::RowVector3d missing_force  = Eigen::Map<const Eigen::RowVector3d>(&sums[12 * c + 9]) - of_points[c].force,
+                                 missing_torque = torque_of(moment) - of_points[c].torque;
+        add_stokeslets(centre, columns(missing_force), faces_.places(), on_faces);
+        add_rotlets(centre, columns(missing_torque), faces_.places(), on_faces);
       }
   }
 

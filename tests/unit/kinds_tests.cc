@@ -121,6 +121,8 @@ TEST(Kinds, AreTheSameWhenReadAgain)
   EXPECT_EQ(again.used, parameters.used);
   EXPECT_EQ(changed.kinds[1].shape.size, 0.5);
   EXPECT_EQ(changed.shell_mesh.level, 1u);
+  // Names with signs that mean something in parameter files.
+  EXPECT_EQ(with_settings(read(two_kinds, {"Output/Directory=output/case#2"}), {"Shell mesh/Level=1"}).output.directory, "output/case#2");
 }
 
 
@@ -143,6 +145,12 @@ TEST(Kinds, WrongOnesAreRefused)
   expect(error_of("subsection Capsule 2\nset Shape = oblate\nend\n"), "Capsule 2/Centres: got none; allowed: that of one capsule of this kind at least.");
   expect(error_of("subsection Capsule 2\nset Centres = 1.5, 0, 0\nend\n"), "kinds.prm:2: Capsule 2/Centres: capsules 1 and 2 overlap by 0.");
   expect(error_of("subsection Capsule 2\nset Centres = 3, 0, 0\nset Prestress = -1\nend\n"), "kinds.prm:3: Capsule 2/Prestress: got -1");
+  expect(error_of("subsection Capsule 2\nset Centres = 0, 0, 4.5\nend\n"), "kinds.prm:2: Capsule 2/Centres: a capsule reaches 0.5");
+  expect(error_of("subsection Capsule\nset Thickness = 0.3\nend\nsubsection Capsule 2\nset Centres = 0, 0, 3\nset Size = 0.1\nend\n"),
+         "kinds.prm:2: Capsule 2/Thickness");
+  expect(error_of("", {"Capsule 2/Centres=" + std::string(200000, '1')}), "Capsule 2/Centres");
+  expect(error_of("subsection Capsule\nset Placement = random\nset Number = 1\nend\nsubsection Capsule 2\nset Size = 0.01\nset Volume fraction = 0.1\nend\n"),
+         "allowed: 1000000 at most");
   expect(error_of("subsection Capsule\nset Size = 2\nend\nsubsection Capsule 2\nend\n"),
          "unknown parameter \"Size\" in section \"Capsule\"; it belongs to section \"Capsule 2\"");
 }

@@ -26,6 +26,10 @@ namespace tanktread
    */
   void
   add_double_layer(const Columns &X, const Columns &u, const Columns &a, double factor, const Columns &x, Columns &velocity);
+
+  /** velocity(x) += 1/(8 pi) sum_q T_q x y/|y|^3, y = x - X_q: what torques T on the liquid make. */
+  void
+  add_rotlets(const Columns &X, const Columns &T, const Columns &x, Columns &velocity);
 } // namespace tanktread
 
 #endif

@@ -20,6 +20,10 @@ namespace tanktread
 {
   class ParameterSource;
 
+  /** `message` about "Capsule/..." as one about another section. */
+  std::string
+  in_section(const std::string &section, std::string message);
+
   /**
    * A kind of capsule and where its capsules start: section "Capsule" for the first one, "Capsule 2", "Capsule 3", ... for others, in which what is not named is as in "Capsule", but for the places.
    * Sizes and moduli of others are given relative to those of the first, with which the scene's units and numbers are made.
@@ -33,8 +37,9 @@ namespace tanktread
     CapsuleShapeParameters shape;
     PlacementParameters    placement;
     ShellParameters        shell;
-    double                 young_modulus_factor   = 1.; // E h over that of the first kind
-    double                 bending_modulus_factor = 1.; // kappa_B likewise
+    double                 young_modulus_factor   = 1.;    // E h over that of the first kind
+    double                 bending_modulus_factor = 1.;    // kappa_B likewise
+    bool                   has_random_places      = false; // which are a list by now
 
     /** Declares the section in `prm`; parsing fills this object, which has to outlive `prm` and stay where it is. */
     void
@@ -50,7 +55,10 @@ namespace tanktread
 
     /** `message` about "Capsule/..." as one about this section. */
     std::string
-    in_section(std::string message) const;
+    in_section(const std::string &message) const
+    {
+      return tanktread::in_section(section, message);
+    }
 
     bool
     is_first() const;

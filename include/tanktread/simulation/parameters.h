@@ -80,6 +80,8 @@ namespace tanktread
     std::string file; // name of the parameter file
     std::string used; // all parameters with the values used, as a parameter file that can be read again
 
+    std::vector<Choice> values; // the same, one by one
+
     /** Declares all sections in `prm`, those of `kinds` among them; parsing fills this object, which has to outlive `prm`. */
     void
     add_parameters(dealii::ParameterHandler &prm);
@@ -100,6 +102,10 @@ namespace tanktread
    */
   Parameters
   read_parameters(const std::string &file, const std::vector<std::string> &overrides = {});
+
+  /** Gives the parameters of `prm` these values. */
+  void
+  set_values(dealii::ParameterHandler &prm, const std::vector<Choice> &values);
 
   /** The same with some of them changed ("Section/Parameter=value"); reads no parameter file. @throws InputError as read_parameters(). */
   Parameters

@@ -27,6 +27,8 @@ namespace tanktread
   /** The parameters that place the capsules of a kind. */
   struct PlacementParameters
   {
+    static constexpr unsigned int most_at_random = 1000000;
+
     Placement                        placement = Placement::list;
     std::vector<std::vector<double>> centres   = {{0., 0., 0.}}; // of the enclosed volumes, in a
     std::vector<std::vector<double>> rotations;                  // vectors along the axis, as long as the angle in units of pi; none: all as the shape has it
@@ -49,7 +51,8 @@ namespace tanktread
     std::vector<Place>
     places() const;
 
-    /** How many capsules of the radius `size` are placed at random in a box of that volume: the number, or that which comes nearest to the volume fraction, at least one. */
+    /** How many capsules of the radius `size` are placed at random in a box of that volume: the number, or that which comes nearest to the volume fraction, at least one. Throws InputError where it is more than
+     * `most_at_random`. */
     unsigned int
     number_in(double volume, double size = 1.) const;
   };

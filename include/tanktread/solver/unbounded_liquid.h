@@ -22,8 +22,8 @@ namespace tanktread
    *
    * With another viscosity inside, a stresslet in the middle of each shell is added that makes their sum the one of the discrete equations, -sym(sum_j x_j l_j)
    * without its trace, l the loads that would make the same flow with viscosity 1 everywhere, over the nodes near and inside the shell. The integral of U n is
-   * multiplied by the viscosity, and with it its error. Of several shells each has the nodes that are nearest to its centre; what the sum of their loads differs from the force of its points, where two
-   * shells share cells, is a Stokeslet there.
+   * multiplied by the viscosity, and with it its error. Of several shells each has the nodes that are nearest to its centre; what the sum and the moment of their loads differ from
+   * the force and the torque of its points, where two shells are near each other, is a Stokeslet and a rotlet there.
    */
   class UnboundedLiquid
   {
@@ -57,7 +57,8 @@ namespace tanktread
     {
       Eigen::RowVector3d centre    = Eigen::RowVector3d::Zero();
       Eigen::RowVector3d force     = Eigen::RowVector3d::Zero();
-      Eigen::Matrix3d    stresslet = Eigen::Matrix3d::Zero(); // symmetric, without trace
+      Eigen::RowVector3d torque    = Eigen::RowVector3d::Zero(); // about the centre
+      Eigen::Matrix3d    stresslet = Eigen::Matrix3d::Zero();    // symmetric, without trace
     };
 
     /** Fields of the capsules of a team, all that the faces have to know: x and force, with another viscosity inside U and v too. Collective. */
