@@ -3,11 +3,11 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <tanktread/fluid/nearest_point.h>
 #include <tanktread/solver/unbounded_liquid.h>
 #include <tanktread/surface/rigid_motion.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace tanktread
 {
@@ -118,10 +118,49 @@ namespace tanktread
   }
 
 
+  Eigen::RowVector3d
+  UnboundedLiquid::place_of_near(const std::size_t i) const
+  {
+    return {near_places_[0][i], near_places_[1][i], near_places_[2][i]};
+  }
+
+
+  void
+  UnboundedLiquid::find_candidates(const ShellConfigurations &shells)
+  {
+    shells_of_near_.assign(near_.size(), 0);
+    between_shells_.clear();
+    if (layout_.n_capsules() == 1)
+      return;
+    const double        margin = 2. * space_.mesh.cell_size(space_.mesh.finest_level());
+    std::vector<double> own; // centre and radius of the sphere about it
+    for (const auto &shell : shells)
+      {
+        const Eigen::RowVector3d centre = shell->x().colwise().mean();
+        own.insert(own.end(), {centre[0], centre[1], centre[2], (shell->x().rowwise() - centre).rowwise().norm().maxCoeff()});
+      }
+    const std::vector<double> all = layout_.gathered(own, 4);
+    for (std::size_t i = 0; i < near_.size(); ++i)
+      {
+        unsigned int n_candidates = 0;
+        for (unsigned int c = 0; c < layout_.n_capsules(); ++c)
+          if ((place_of_near(i) - Eigen::Map<const Eigen::RowVector3d>(&all[4 * c])).norm() < all[4 * c + 3] + margin)
+            {
+              shells_of_near_[i] = c;
+              ++n_candidates;
+            }
+        if (n_candidates > 1)
+          between_shells_.push_back({i, std::numeric_limits<double>::infinity()});
+      }
+  }
+
+
   std::vector<UnboundedLiquid::Multipoles>
-  UnboundedLiquid::add_all_points(const State &state, const ShellConfigurations &shells, const ShellFields &velocities, Columns &on_faces) const
+  UnboundedLiquid::add_all_points(const State &state, const ShellConfigurations &shells, const ShellFields &velocities, Columns &on_faces)
   {
     std::vector<Multipoles> result(layout_.n_capsules());
+    if (viscosity_ratio_ != 1.)
+      find_candidates(shells);
     for (unsigned int team = 0; team < layout_.n_teams(); ++team)
       {
         const std::vector<std::vector<ControlPoints>> fields = fields_of_team(team, state, shells, velocities);
@@ -137,6 +176,12 @@ namespace tanktread
               continue;
             const ControlPoints &U = of_capsule[2], &v = of_capsule[3];
             add_double_layer(columns(x), columns(U), columns(v), 1. - viscosity_ratio_, faces_.places(), on_faces);
+            for (Between &node : between_shells_)
+              if (const double square = (x.rowwise() - place_of_near(node.near)).rowwise().squaredNorm().minCoeff(); square < node.square)
+                {
+                  node.square                = square;
+                  shells_of_near_[node.near] = c;
+                }
             result[c].centre             = x.colwise().mean();
             result[c].force              = force.colwise().sum();
             const Eigen::Matrix3d moment = (x.rowwise() - result[c].centre).transpose() * force;
@@ -152,15 +197,11 @@ namespace tanktread
   UnboundedLiquid::add_missing(const FluidBlockVector &fields, const std::vector<Multipoles> &of_points, Columns &on_faces)
   {
     uniform_.vmult(loads_, fields);
-    std::vector<double>           sums(12 * of_points.size(), 0.); // of the nodes nearest to each capsule: moments and forces
-    std::vector<dealii::Point<3>> centres;
-    for (const Multipoles &of_capsule : of_points)
-      centres.emplace_back(of_capsule.centre[0], of_capsule.centre[1], of_capsule.centre[2]);
-    const NearestPoint nearest_to(centres, space_.mesh.box());
+    std::vector<double> sums(12 * of_points.size(), 0.); // of the nodes nearest to each capsule: moments and forces
     for (std::size_t i = 0; i < near_.size(); ++i)
       {
-        const Eigen::RowVector3d y(near_places_[0][i], near_places_[1][i], near_places_[2][i]);
-        const std::size_t        nearest = nearest_to({y[0], y[1], y[2]});
+        const Eigen::RowVector3d y       = place_of_near(i);
+        const std::size_t        nearest = shells_of_near_[i];
         for (unsigned int d = 0; d < 3; ++d)
           {
             const double load = loads_.block(velocity_block).local_element(3 * near_[i] + d);

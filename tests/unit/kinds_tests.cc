@@ -145,7 +145,7 @@ TEST(Kinds, WrongOnesAreRefused)
   expect(error_of("subsection Capsule 2\nset Shape = oblate\nend\n"), "Capsule 2/Centres: got none; allowed: that of one capsule of this kind at least.");
   expect(error_of("subsection Capsule 2\nset Centres = 1.5, 0, 0\nend\n"), "kinds.prm:2: Capsule 2/Centres: capsules 1 and 2 overlap by 0.");
   expect(error_of("subsection Capsule 2\nset Centres = 3, 0, 0\nset Prestress = -1\nend\n"), "kinds.prm:3: Capsule 2/Prestress: got -1");
-  expect(error_of("subsection Capsule 2\nset Centres = 0, 0, 4.5\nend\n"), "kinds.prm:2: Capsule 2/Centres: a capsule reaches 0.5");
+  expect(error_of("subsection Capsule 2\nset Centres = 0, 0, 4.5\nend\n"), "kinds.prm:2: Capsule 2/Centres: a capsule reaches 0.49");
   expect(error_of("subsection Capsule\nset Thickness = 0.3\nend\nsubsection Capsule 2\nset Centres = 0, 0, 3\nset Size = 0.1\nend\n"),
          "kinds.prm:2: Capsule 2/Thickness");
   expect(error_of("", {"Capsule 2/Centres=" + std::string(200000, '1')}), "Capsule 2/Centres");

@@ -22,7 +22,7 @@ namespace tanktread
    *
    * With another viscosity inside, a stresslet in the middle of each shell is added that makes their sum the one of the discrete equations, -sym(sum_j x_j l_j)
    * without its trace, l the loads that would make the same flow with viscosity 1 everywhere, over the nodes near and inside the shell. The integral of U n is
-   * multiplied by the viscosity, and with it its error. Of several shells each has the nodes that are nearest to its centre; what the sum and the moment of their loads differ from
+   * multiplied by the viscosity, and with it its error. Of several shells each has the nodes that are nearest to its control points; what the sum and the moment of their loads differ from
    * the force and the torque of its points, where two shells are near each other, is a Stokeslet and a rotlet there.
    */
   class UnboundedLiquid
@@ -67,7 +67,14 @@ namespace tanktread
 
     /** The flow of all capsules, those of one team after the other: each rank has faces of its own. Returns what their points are from far away. Collective. */
     std::vector<Multipoles>
-    add_all_points(const State &state, const ShellConfigurations &shells, const ShellFields &velocities, Columns &on_faces) const;
+    add_all_points(const State &state, const ShellConfigurations &shells, const ShellFields &velocities, Columns &on_faces);
+
+    Eigen::RowVector3d
+    place_of_near(std::size_t i) const;
+
+    /** The shell of each near node, where it can be that of one shell alone; the others become `between_shells_`. Collective. */
+    void
+    find_candidates(const ShellConfigurations &shells);
 
     /** Adds what makes `of_points` those of the discrete equations with the flow `fields`. Collective. */
     void
@@ -80,7 +87,16 @@ namespace tanktread
     const StokesOperator      uniform_; // viscosity 1 everywhere
     std::vector<unsigned int> near_;    // owned nodes of the cells with another viscosity in them
     Columns                   near_places_;
-    FluidBlockVector          loads_;
+    std::vector<unsigned int> shells_of_near_; // numbers
+
+    /** A near node and the square of its distance from the nearest control point so far. */
+    struct Between
+    {
+      std::size_t near;
+      double      square;
+    };
+    std::vector<Between> between_shells_;
+    FluidBlockVector     loads_;
   };
 } // namespace tanktread
 
