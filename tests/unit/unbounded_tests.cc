@@ -160,22 +160,21 @@ TEST(UnboundedLiquid, CarriesOneShellWithTheFlowOfAnother)
 
 TEST(UnboundedLiquid, OtherViscositiesInTwoShellsNeedNoLargeBox)
 {
-  // Two shells, apart, with a film thinner than a cell between them, and long ones side by side, of which each reaches to where the other's centre is nearer; their flow is that of a box with eight times the volume.
+  // Two shells with a film thinner than a cell between them, and long ones side by side, of which each reaches to where the other's centre is nearer; their flow is that of a larger box.
   CapsuleShapeParameters long_one;
   long_one.shape                                                       = Shape::ellipsoid;
   long_one.axes                                                        = {{2.5, 1., 1.}};
   using Centres                                                        = std::vector<Eigen::RowVector3d>;
-  const std::vector<std::pair<CapsuleShapeParameters, Centres>> scenes = {{{}, {{-0.313, -1.25, 0.114}, {0.213, 1.3, -0.131}}},
-                                                                          {{}, {{-0.313, -1.03, 0.114}, {0.213, 1.075, -0.131}}},
+  const std::vector<std::pair<CapsuleShapeParameters, Centres>> scenes = {{{}, {{-0.313, -1.03, 0.114}, {0.213, 1.075, -0.131}}},
                                                                           {long_one, {{-0.983, -0.81, 0.114}, {1.013, 0.82, -0.031}}}};
   for (const auto &[shape, centres] : scenes)
     {
       std::vector<ShellFields> velocities;
-      for (const double side : {7.5, 15.})
+      for (const double side : {7.5, 10.})
         {
           GivenForces         scene(make_capsule(shape, 2), Interface::enriched, side, {0.3125, 1.25, 1.5}, centres, {5., {}}, true);
           const ControlPoints strained = (scene.X().rowwise() - centres[0]) * strain(), pulled = ControlPoints::Constant(scene.X(1).rows(), 3, 0.2);
-          velocities.push_back(scene.flow({scene.nodal_forces(13. * strained), scene.nodal_forces(pulled, 1)}, 1e-8, 6).velocity);
+          velocities.push_back(scene.flow({scene.nodal_forces(13. * strained), scene.nodal_forces(pulled, 1)}, 1e-7, 4).velocity);
         }
       double difference = 0., norm = 0.;
       for (unsigned int c = 0; c < 2; ++c)
