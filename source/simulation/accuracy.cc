@@ -16,6 +16,7 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 namespace tanktread
 {
@@ -60,24 +61,13 @@ namespace tanktread
     }
 
 
-    /** Radius of the smallest capsules, in a: what the cells have to be measured by. */
-    double
-    smallest_size(const Parameters &parameters)
+    /** Radii of the smallest and of the largest capsules, in a. */
+    std::pair<double, double>
+    sizes(const Parameters &parameters)
     {
-      double result = parameters.kinds[0].shape.size;
-      for (const KindParameters &kind : parameters.kinds)
-        result = std::min(result, kind.shape.size);
-      return result;
-    }
-
-
-    double
-    largest_size(const Parameters &parameters)
-    {
-      double result = parameters.kinds[0].shape.size;
-      for (const KindParameters &kind : parameters.kinds)
-        result = std::max(result, kind.shape.size);
-      return result;
+      const auto is_smaller    = [](const KindParameters &a, const KindParameters &b) { return a.shape.size < b.shape.size; };
+      const auto [least, most] = std::minmax_element(parameters.kinds.begin(), parameters.kinds.end(), is_smaller);
+      return {least->shape.size, most->shape.size};
     }
 
 
@@ -92,7 +82,7 @@ namespace tanktread
     double
     cells_error(const Parameters &parameters, double h)
     {
-      h /= smallest_size(parameters);
+      h /= sizes(parameters).first; // what cells have to be measured by
       const double uniform = cells_factor * std::pow(h, cells_order);
       return has_contrast(parameters) ? std::max(uniform, factor_of_contrast(parameters) * std::pow(h, contrast_order)) : uniform;
     }
@@ -135,7 +125,7 @@ namespace tanktread
       double       h     = std::pow(error / cells_factor, 1. / cells_order);
       if (has_contrast(parameters))
         h = std::min(h, std::pow(error / factor_of_contrast(parameters), 1. / contrast_order));
-      h *= smallest_size(parameters);
+      h *= sizes(parameters).first;
       const double unit = std::pow(10., std::floor(std::log10(h)) - 2.);
       return unit * std::floor(h / unit);
     }
@@ -353,11 +343,11 @@ namespace tanktread
         choose("Time", "Step", "1");
         choose("Time",
                "Tolerance",
-               number_text(of_steps * target * D * smallest_size(parameters) / (steps_factor * factor_of_scheme(parameters) * memory_of_shape(parameters))));
+               number_text(of_steps * target * D * sizes(parameters).first / (steps_factor * factor_of_scheme(parameters) * memory_of_shape(parameters))));
       }
     if (!source.is_set("Time/Steady tolerance") && parameters.scene.oscillation_frequency == 0. && stays_in_the_middle(parameters))
       choose("Time", "Limit tolerance", number_text(of_stop * target));
-    const double newton = std::clamp(of_newton * target * D * smallest_size(parameters) / (newton_factor * memory_of_shape(parameters)), 1e-7, 1e-2);
+    const double newton = std::clamp(of_newton * target * D * sizes(parameters).first / (newton_factor * memory_of_shape(parameters)), 1e-7, 1e-2);
     choose("Solver", "Newton tolerance", number_text(newton));
     choose("Solver", "Volume tolerance", number_text(std::min(1e-3, 0.01 * newton)));
     return result;
@@ -371,7 +361,7 @@ namespace tanktread
     std::vector<ErrorShare> result;
     if (parameters.solver.interface == Interface::enriched)
       {
-        const double order = cells_error(parameters, h) > cells_factor * std::pow(h / smallest_size(parameters), cells_order) ? contrast_order : cells_order;
+        const double order = cells_error(parameters, h) > cells_factor * std::pow(h / sizes(parameters).first, cells_order) ? contrast_order : cells_order;
         result.push_back({"cells", cells_error(parameters, h), std::pow(2., 2.3 / order)});
       }
     result.push_back({"cells away from the shell", parameters.fluid_mesh.grading < 3 ? ungraded_far_cells : graded_far_cells, 1.2});
@@ -379,14 +369,14 @@ namespace tanktread
       result.push_back({"control mesh", control_mesh_error(parameters, parameters.shell_mesh.level), 1.2});
     if (parameters.time.tolerance > 0. && std::isfinite(factor_of_scheme(parameters)))
       result.push_back({"steps",
-                        steps_factor * factor_of_scheme(parameters) * memory_of_shape(parameters) * parameters.time.tolerance / (D * smallest_size(parameters)),
+                        steps_factor * factor_of_scheme(parameters) * memory_of_shape(parameters) * parameters.time.tolerance / (D * sizes(parameters).first),
                         std::pow(2., 1. / order(parameters.time.scheme))});
     result.push_back(
-      {"Newton tolerance", newton_factor * memory_of_shape(parameters) * parameters.solver.newton_tolerance / (D * smallest_size(parameters)), 1.05});
+      {"Newton tolerance", newton_factor * memory_of_shape(parameters) * parameters.solver.newton_tolerance / (D * sizes(parameters).first), 1.05});
     if (parameters.scene.boundary == Boundary::faces)
       {
         const double side = *std::min_element(parameters.scene.box_side.begin(), parameters.scene.box_side.end());
-        result.push_back({"box (against unbounded liquid)", faces_factor * std::pow(largest_size(parameters) / side, 3.), 1.2});
+        result.push_back({"box (against unbounded liquid)", faces_factor * std::pow(sizes(parameters).second / side, 3.), 1.2});
       }
     if (parameters.time.limit_tolerance > 0.)
       result.push_back({"stop", parameters.time.limit_tolerance, 1.05});

@@ -13,6 +13,7 @@ import concurrent.futures
 import os
 import pathlib
 import random
+import re
 import resource
 import shutil
 import subprocess
@@ -125,7 +126,8 @@ def complaint(program, what, name, text, folder):
         return f"exit code {run.returncode}: {said[-400:]}"
     if sorted(folder.iterdir()) != before:
         return "it left files behind"
-    if run.returncode == 1 and not any(place in said for place in (f"{parameters.name}:", name)) and "/" not in said:
+    places = {"meshes": f"{re.escape(name)}|case\\.prm:\\d", "parameters": r"case\.prm:\d|\b[A-Z][A-Za-z0-9 ]*/[A-Z]"}
+    if run.returncode == 1 and not re.search(places[what], said):
         return f"a message without a place: {said[-400:]}"
     return ""
 

@@ -35,6 +35,7 @@ namespace
       for (double &number : u.block(velocity_block))
         number = normal(random);
       std::mt19937 same_everywhere(3);
+      normal.reset(); // numbers are made in pairs: where a rank has drawn an odd number of them, the next would be left from above
       f.resizeLike(x);
       for (Eigen::Index i = 0; i < f.size(); ++i)
         f.data()[i] = normal(same_everywhere);
