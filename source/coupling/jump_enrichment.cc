@@ -65,7 +65,7 @@ namespace tanktread
     : space_(space)
     , contrast_(contrast)
     , locator_(std::move(locator))
-    , averages_(std::move(vertices))
+    , averages_(std::move(vertices), space.mesh.cell_size(space.mesh.finest_level()))
   {
     if (contrast_.ratio != 1.)
       {

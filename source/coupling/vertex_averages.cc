@@ -10,6 +10,16 @@
 
 namespace tanktread
 {
+  namespace
+  {
+    /**
+     * Of a vertex, in squares of a cell's side: a plane through it weighs 1, one that passes at a distance of d cells 1 - d. With less than this the average is taken
+     * for a part of one, which vanishes with the weight.
+     */
+    constexpr double least_weight = 0.05;
+  } // namespace
+
+
   std::array<double, 8>
   hat_functions(const dealii::Point<3> &x)
   {
@@ -20,8 +30,9 @@ namespace tanktread
   }
 
 
-  VertexAverages::VertexAverages(std::shared_ptr<const NodeSpace> vertices)
+  VertexAverages::VertexAverages(std::shared_ptr<const NodeSpace> vertices, const double h)
     : vertices_(std::move(vertices))
+    , h_(h)
   {}
 
 
@@ -102,13 +113,13 @@ namespace tanktread
       }
     vertices_->collect(sums.data());
     seeing_vertices_.clear();
-    n_meetings_ = 0;
+    const double least = least_weight * h_ * h_;
+    n_meetings_        = 0;
     for (unsigned int i = 0; i < vertices_->n_owned(); ++i)
       if (const double *const sum = &sums[4 * std::size_t(i)]; sum[0] != 0.)
         {
-          // Vertices of cut cells that see no point belong to corners that are barely cut: nothing is extended to them.
           const double mean = sum[1] / sum[0];
-          seeing_vertices_.push_back({i, static_cast<unsigned int>(std::lround(mean)), sum[0] > 1e-14 ? 1. / sum[0] : 0.});
+          seeing_vertices_.push_back({i, static_cast<unsigned int>(std::lround(mean)), 1. / std::max(sum[0], least)});
           n_meetings_ += sum[2] / sum[0] - mean * mean > 1e-12 * (1. + mean * mean);
         }
   }

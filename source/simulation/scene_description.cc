@@ -6,6 +6,7 @@
 #include <tanktread/simulation/scene_description.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -57,14 +58,21 @@ namespace tanktread
 
 
     void
-    check_extent(const SceneDescription &scene, const double h)
+    check_extent(const SceneDescription &scene, const std::vector<KindParameters> &kinds, const double h)
     {
-      static const char *const axes   = "xyz";
-      Eigen::RowVector3d       extent = Eigen::RowVector3d::Zero();
+      static const char *const    axes   = "xyz";
+      Eigen::RowVector3d          extent = Eigen::RowVector3d::Zero();
+      std::array<unsigned int, 3> widest{{0, 0, 0}}; // kinds
       for (unsigned int c = 0; c < scene.places.size(); ++c)
         {
-          const ControlPoints x = placed(scene.kind(c).shape.control_points, scene.places[c]);
-          extent                = extent.cwiseMax(x.colwise().maxCoeff() - x.colwise().minCoeff());
+          const ControlPoints      x   = placed(scene.kind(c).shape.control_points, scene.places[c]);
+          const Eigen::RowVector3d own = x.colwise().maxCoeff() - x.colwise().minCoeff();
+          for (unsigned int d = 0; d < 3; ++d)
+            if (own[d] > extent[d])
+              {
+                extent[d] = own[d];
+                widest[d] = scene.kind_of[c];
+              }
         }
       for (unsigned int d = 0; d < 3; ++d)
         {
@@ -72,7 +80,10 @@ namespace tanktread
           const double needed = extent[d] + (scene.box.is_periodic(d) && scene.solver.interface == Interface::enriched ? 4. * h : 0.);
           if (needed < scene.box.side[d])
             continue;
-          std::ostringstream message;
+          std::ostringstream    message;
+          const KindParameters &kind = kinds[widest[d]];
+          if (kind.shape.shape == Shape::file)
+            message << kind.section << "/Mesh file: the capsule extends over " << extent[d] << " a along " << axes[d] << ". ";
           message << "Scene/Box side is " << scene.box.side[d] << " along " << axes[d] << "; allowed: more than " << needed << ", the capsule's extent"
                   << (needed > extent[d] ? " and four finest cells to its periodic image" : "") << '.';
           throw InputError(message.str());
@@ -143,7 +154,7 @@ namespace tanktread
   {
     // A coarse control mesh has the shape to a hundredth of a per cent.
     const SceneDescription scene = description(parameters, 3);
-    check_extent(scene, parameters.fluid_mesh.finest_cell);
+    check_extent(scene, parameters.kinds, parameters.fluid_mesh.finest_cell);
     std::vector<std::string> sections;
     for (const KindParameters &kind : parameters.kinds)
       sections.push_back(kind.section);

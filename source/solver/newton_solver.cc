@@ -48,7 +48,7 @@ namespace tanktread
         const double area = std::cbrt(36. * M_PI * std::pow(layout_.capsule(i).volume(), 2)); // of a sphere of that volume
         of_volumes += (std::pow(capsule.flux, 2) + std::pow(capsule.volume / tau, 2)) / std::pow(area, 2);
       }
-    return std::sqrt(layout_.sum(sum / layout_.capsules().n_control_points() + of_volumes));
+    return std::sqrt(layout_.sum(sum / layout_.capsules().n_control_points() + of_volumes / layout_.n_capsules()));
   }
 
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: what unit pressure jumps at the shells do to the liquid, for the preconditioner.
 
+#include <tanktread/coupling/pressure_without_mean.h>
 #include <tanktread/fluid/linear_solver.h>
 #include <tanktread/fluid/nearest_point.h>
 #include <tanktread/solver/pressure_jump_response.h>
@@ -41,6 +42,8 @@ namespace tanktread
     const std::vector<double> divergence = products(response.block(pressure_block), product.block(pressure_block));
     e_                                   = response.block(pressure_block);
     e_ *= -1.;
+    if (layout_.n_capsules() > 1)
+      set_mean(space, layout_.capsules().volume() / space.mesh.box().volume());
     for (std::size_t c = 0; c < s_.size(); ++c)
       {
         s_[c]               = normal_fields[c].cwiseProduct(moments[c]).sum() - divergence[c];
@@ -48,6 +51,19 @@ namespace tanktread
         if (!(s_[c] > 1e-4 * volume && s_[c] < volume))
           s_[c] = volume;
       }
+  }
+
+
+  void
+  PressureJumpResponse::set_mean(const TaylorHoodSpace &space, const double mean)
+  {
+    FluidBlockVector              fields;
+    dealii::AlignedVector<double> without_mean;
+    space.reinit(fields);
+    fields.block(pressure_block) = e_;
+    PressureWithoutMean(space).load(fields, without_mean);
+    for (std::size_t i = 0; i < e_.locally_owned_size(); ++i)
+      e_.local_element(i) = without_mean[i] + mean;
   }
 
 

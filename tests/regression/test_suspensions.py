@@ -124,8 +124,8 @@ class Script(Repository):
         code, said = self.call("suspensions/run.py", "random_9_10", "--program", str(self.program), python=(sys.executable,))
         self.assertEqual(code, 2)
         self.assertIn("no such scene or group: random_9_10", said)
-        code, said = self.call("suspensions/run.py", "random_64_10", "--program", str(self.program), python=(sys.executable,))
-        self.assertIn("random_64_10 is for --full", said)
+        code, said = self.call("suspensions/run.py", "random_64_20", "--program", str(self.program), python=(sys.executable,))
+        self.assertIn("random_64_20 is for --full", said)
 
 
 if __name__ == "__main__":

@@ -38,15 +38,15 @@ namespace tanktread
   /**
    * f_t and f_n at a vertex x_v are averages of the forces per area at the points X_q of the surface with the mesh's linear hat functions as weights,
    *
-   *     f_v = sum_q M_v(X_q) f_q dA_q / sum_q M_v(X_q) dA_q,   f_t = f - f_n n,   f_n = f . n,
+   *     f_v = sum_q M_v(X_q) f_q dA_q / max(sum_q M_v(X_q) dA_q, 0.05 h^2),   f_t = f - f_n n,   f_n = f . n,
    *
-   * and zero at vertices that see no point. extend() is this map, add_transposed() its transpose. Of several shells at once if no vertex sees two of them.
+   * so that f_v vanishes continuously when the last point leaves a vertex. extend() is this map, add_transposed() its transpose. Of several shells at once if no vertex sees two of them.
    */
   class VertexAverages
   {
   public:
-    /** @param vertices linear nodes with four components. */
-    explicit VertexAverages(std::shared_ptr<const NodeSpace> vertices);
+    /** @param vertices linear nodes with four components. @param h side of the cells at the shells. */
+    VertexAverages(std::shared_ptr<const NodeSpace> vertices, double h);
 
     /** @param shells in the order of their points. @param points of all shells, kept by reference. Collective. */
     void
@@ -150,6 +150,7 @@ namespace tanktread
     average(VertexArray &values) const;
 
     std::shared_ptr<const NodeSpace>   vertices_;
+    double                             h_;
     const PointInterpolation          *points_ = nullptr;
     std::vector<LocatedShell>          shells_;
     std::vector<unsigned int>          order_;  // local points by cell

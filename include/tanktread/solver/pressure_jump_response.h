@@ -37,7 +37,8 @@ namespace tanktread
    *     pi = -(r_pi - e . r_p)/s.
    *
    * For e and s the Stokes equations are solved with the loads R v of all shells, roughly: -e is the pressure, s the flux through the shell and what is left of
-   * the divergence. Loads of several shells are told apart by the nearest of their centres.
+   * the divergence. Loads of several shells are told apart by the nearest of their centres: so e has to be zero outside of all of them, its mean their part of
+   * the box.
    */
   class PressureJumpResponse
   {
@@ -66,6 +67,9 @@ namespace tanktread
     }
 
   private:
+    /** Adds a constant pressure to e. Collective. */
+    void
+    set_mean(const TaylorHoodSpace &space, double mean);
     /** The capsule that each pressure of this rank belongs to, if there are several. */
     void
     assign_nodes(const TaylorHoodSpace &space, const Coupling &coupling);
