@@ -2,8 +2,10 @@
 // Part of Tanktread: the program.
 
 #include <tanktread/base/command_line.h>
+#include <tanktread/base/exceptions.h>
 #include <tanktread/base/mpi_errors.h>
 #include <tanktread/base/mpi_start.h>
+#include <tanktread/base/stop_request.h>
 #include <tanktread/base/version.h>
 #include <tanktread/simulation/shared_parameters.h>
 #include <tanktread/simulation/simulation.h>
@@ -38,7 +40,9 @@ namespace
     return "";
   }
 
-  void
+  constexpr int stopped = 3; // exit code of a run that has ended early, as it was asked to
+
+  int
   work(const std::vector<std::string> &words)
   {
     const tanktread::CommandLine command_line = tanktread::parse_command_line(words);
@@ -48,11 +52,18 @@ namespace
     if (command_line.action == tanktread::CommandLine::Action::run)
       {
         const tanktread::Parameters parameters = tanktread::read_shared_parameters(command_line.file, command_line.overrides, MPI_COMM_WORLD);
+        if (command_line.resume && parameters.study.is_wanted())
+          throw tanktread::InputError("--resume is for single runs; allowed with Study/Vary: nothing");
         if (parameters.study.is_wanted())
           tanktread::Study(parameters, command_line.overrides, MPI_COMM_WORLD).run();
         else
-          tanktread::Simulation(parameters, MPI_COMM_WORLD).run();
+          {
+            tanktread::note_requests();
+            if (tanktread::Simulation(parameters, MPI_COMM_WORLD).run(command_line.resume) == "stopped")
+              return stopped;
+          }
       }
+    return 0;
   }
 } // namespace
 
@@ -67,7 +78,9 @@ main(int argc, char *argv[])
       argv[1] = nullptr;
       tanktread::expect_ranks_on_one_machine();
       const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-      return tanktread::exit_code_of(MPI_COMM_WORLD, [&words] { work(words); });
+      int                                            result = 0;
+      const int                                      failed = tanktread::exit_code_of(MPI_COMM_WORLD, [&] { result = work(words); });
+      return failed != 0 ? failed : result;
     }
   catch (const std::exception &error)
     {

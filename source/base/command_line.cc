@@ -48,7 +48,7 @@ namespace tanktread
               ++i;
           }
         else if (word == "--resume")
-          throw InputError("--resume is not available in this version");
+          command_line.resume = true;
         else if (word == "--version")
           command_line.action = Action::version;
         else if (word == "--help" || word == "-h")
@@ -61,6 +61,8 @@ namespace tanktread
           throw InputError("more than one parameter file: \"" + command_line.file + "\" and \"" + word + "\"; allowed: one");
       }
     check_file(command_line);
+    if (command_line.resume && command_line.action != Action::run)
+      throw InputError("--resume is for a run; it cannot be combined with another action");
     return command_line;
   }
 
@@ -73,6 +75,7 @@ namespace tanktread
            "Computes the motion of liquid capsules enclosed by thin elastic shells in viscous flow.\n"
            "\n"
            "  --set \"Section/Parameter=value\"    set a parameter; wins over the file; may be repeated\n"
+           "  --resume                           go on from the newest good checkpoint in Output/Directory, if there is one\n"
            "  --validate                         check everything, compute nothing\n"
            "  --print-parameters [prm|markdown]  list all parameters with defaults and allowed values\n"
            "  --version                          versions of the program and of its libraries\n"
@@ -80,6 +83,8 @@ namespace tanktread
            "\n"
            "A mesh file named in FILE.prm is looked for in the folder of FILE.prm; the folder for the output\n"
            "(Output/Directory) is made in the folder in which the program is started.\n"
-           "Exit codes: 0 done, 1 bad input, 2 the computation failed or could not be written.\n";
+           "SIGUSR1 asks a run for a checkpoint, SIGTERM or a file `stop` in its folder for one and the end.\n"
+           "Exit codes: 0 done, 1 bad input, 2 the computation failed or could not be written, 3 stopped as\n"
+           "asked for, after a checkpoint.\n";
   }
 } // namespace tanktread

@@ -12,6 +12,19 @@
 
 namespace tanktread
 {
+  namespace
+  {
+    std::string
+    line_of(const std::vector<std::string> &names)
+    {
+      std::string line;
+      for (std::size_t i = 0; i < names.size(); ++i)
+        line += (i == 0 ? "" : ",") + names[i];
+      return line;
+    }
+  } // namespace
+
+
   CsvWriter::CsvWriter(const std::string &file_name, const std::vector<std::string> &names, const bool active)
     : active(active)
     , file_name(file_name)
@@ -21,11 +34,25 @@ namespace tanktread
       return;
     errno = 0;
     file.open(file_name);
-    std::string line;
-    for (std::size_t i = 0; i < names.size(); ++i)
-      line += (i == 0 ? "" : ",") + names[i];
-    write_line(line);
+    write_line(line_of(names));
   }
+
+  CsvWriter::CsvWriter(const std::string &file_name, const std::vector<std::string> &names, const std::streamoff size)
+    : active(true)
+    , file_name(file_name)
+    , n_columns(names.size())
+    , size(size)
+  {
+    std::ifstream before(file_name);
+    std::string   line;
+    std::getline(before, line);
+    before.close();
+    std::error_code error;
+    if (line != line_of(names) || std::filesystem::file_size(file_name, error) < std::uintmax_t(size) || error)
+      throw InputError("\"" + file_name + "\" is not what the run had written: it cannot be continued");
+    cut_and_open(file, file_name, size);
+  }
+
 
   void
   CsvWriter::row(const std::vector<double> &values)

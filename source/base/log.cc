@@ -92,6 +92,24 @@ namespace tanktread
   }
 
   void
+  Log::reopen(const std::string &file_name, const std::streamoff size)
+  {
+    if (!active)
+      return;
+    cut_and_open(file, file_name, size);
+    if (!(file << before_open << std::flush))
+      throw OutputError(cannot_write(file_name, errno));
+    before_open.clear();
+    name = file_name;
+  }
+
+  std::streamoff
+  Log::written()
+  {
+    return file.is_open() ? std::streamoff(file.tellp()) : std::streamoff(0);
+  }
+
+  void
   Log::header(const RunDescription &run)
   {
     std::string text = program_version() + "\n" + library_versions() + "\n" + std::to_string(run.n_ranks) + (run.n_ranks == 1 ? " rank, " : " ranks, ") +

@@ -7,7 +7,9 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
+#include <system_error>
 
 namespace tanktread
 {
@@ -15,6 +17,19 @@ namespace tanktread
   cannot_write(const std::string &file, const int error)
   {
     return "cannot write \"" + file + "\"" + (error == 0 ? "" : std::string(": ") + std::strerror(error));
+  }
+
+  void
+  cut_and_open(std::ofstream &stream, const std::string &file, const std::streamoff size)
+  {
+    std::error_code error;
+    std::filesystem::resize_file(file, size, error);
+    if (error)
+      throw OutputError(cannot_write(file, error.value()));
+    errno = 0;
+    stream.open(file, std::ios::app);
+    if (!stream)
+      throw OutputError(cannot_write(file, errno));
   }
 
   void

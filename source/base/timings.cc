@@ -69,7 +69,13 @@ namespace tanktread
   double
   Timings::elapsed() const
   {
-    return seconds_since(start);
+    return before + seconds_since(start);
+  }
+
+  void
+  Timings::add_before(const double seconds)
+  {
+    before += seconds;
   }
 
   const std::vector<Timings::Part> &
@@ -98,7 +104,7 @@ namespace tanktread
   std::string
   Timings::table() const
   {
-    const double total = elapsed();
+    const double total = seconds_since(start);
     std::string  text  = table_row("part", "calls", "seconds", "share");
     const auto   add   = [&](const std::string &name, const std::string &calls, const double seconds) {
       text += table_row(name, calls, formatted("%.2f", seconds), formatted("%.1f%%", 100 * seconds / total));

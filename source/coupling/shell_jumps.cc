@@ -49,7 +49,7 @@ namespace tanktread
     pairs_.reinit(space_, colours_, contrast_.ratio);
     set_sides();
     if (contrast_.ratio != 1.)
-      set_viscous_forces();
+      give_viscous_forces();
   }
 
 
@@ -84,7 +84,15 @@ namespace tanktread
 
 
   void
-  ShellJumps::set_viscous_forces()
+  ShellJumps::set_viscous_forces(ViscousForces forces)
+  {
+    viscous_forces_ = std::move(forces.at_vertices);
+    viscous_boxes_  = std::move(forces.boxes);
+  }
+
+
+  void
+  ShellJumps::give_viscous_forces()
   {
     std::vector<std::vector<JumpEnrichment::ViscousForce>> of_colour(colours_.size());
     for (const JumpEnrichment::ViscousForce &force : viscous_forces_)

@@ -15,39 +15,40 @@ namespace tanktread
   {
     constexpr std::size_t n_numbers_of_sample = sizeof(MotionSample) / sizeof(double);
     static_assert(sizeof(MotionSample) == n_numbers_of_sample * sizeof(double), "A sample is numbers alone.");
-
-    std::vector<double>
-    packed(const CapsuleMemory &memory)
-    {
-      const InertiaEllipsoid     &e     = memory.ellipsoid;
-      const std::array<double, 4> phase = memory.phase.numbers();
-      std::vector<double>         result(phase.begin(), phase.end());
-      result.insert(result.end(), {e.L, e.B, e.W, e.taylor_parameter, e.inclination, e.centroid[0], e.centroid[1], e.centroid[2]});
-      for (const MotionSample &sample : memory.motion)
-        {
-          const double *const numbers = &sample.time;
-          result.insert(result.end(), numbers, numbers + n_numbers_of_sample);
-        }
-      return result;
-    }
-
-
-    CapsuleMemory
-    unpacked(const std::vector<double> &numbers, const Capsule &capsule)
-    {
-      const double *next = numbers.data();
-      CapsuleMemory result{PhaseAngles(capsule.topology(), {{next[0], next[1], next[2], next[3]}}), {}, {}};
-      next += 4;
-      result.ellipsoid = {next[0], next[1], next[2], next[3], next[4], Eigen::Vector3d(next[5], next[6], next[7])};
-      for (next += 8; next < numbers.data() + numbers.size(); next += n_numbers_of_sample)
-        {
-          MotionSample sample{};
-          std::copy_n(next, n_numbers_of_sample, &sample.time);
-          result.motion.push_back(sample);
-        }
-      return result;
-    }
   } // namespace
+
+
+  std::vector<double>
+  packed(const CapsuleMemory &memory)
+  {
+    const InertiaEllipsoid     &e     = memory.ellipsoid;
+    const std::array<double, 4> phase = memory.phase.numbers();
+    std::vector<double>         result(phase.begin(), phase.end());
+    result.insert(result.end(), {e.L, e.B, e.W, e.taylor_parameter, e.inclination, e.centroid[0], e.centroid[1], e.centroid[2]});
+    for (const MotionSample &sample : memory.motion)
+      {
+        const double *const numbers = &sample.time;
+        result.insert(result.end(), numbers, numbers + n_numbers_of_sample);
+      }
+    return result;
+  }
+
+
+  CapsuleMemory
+  unpacked(const std::vector<double> &numbers, const Capsule &capsule)
+  {
+    const double *next = numbers.data();
+    CapsuleMemory result{PhaseAngles(capsule.topology(), {{next[0], next[1], next[2], next[3]}}), {}, {}};
+    next += 4;
+    result.ellipsoid = {next[0], next[1], next[2], next[3], next[4], Eigen::Vector3d(next[5], next[6], next[7])};
+    for (next += 8; next < numbers.data() + numbers.size(); next += n_numbers_of_sample)
+      {
+        MotionSample sample{};
+        std::copy_n(next, n_numbers_of_sample, &sample.time);
+        result.motion.push_back(sample);
+      }
+    return result;
+  }
 
 
   CapsuleMoves::CapsuleMoves(const ShellLayout &layout, std::vector<unsigned int> team_of)

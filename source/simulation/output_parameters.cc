@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Part of Tanktread: where results go and how often.
 
-#include <tanktread/base/exceptions.h>
 #include <tanktread/simulation/output_parameters.h>
 
 #include <deal.II/base/parameter_handler.h>
-
-#include <sstream>
 
 namespace tanktread
 {
@@ -32,17 +29,11 @@ namespace tanktread
                       contour_times,
                       "Times at which the cut of the shell with the plane y = 0 is written, besides those of the fields; the steps need not meet them.",
                       dealii::Patterns::List(Double(0.)));
-    prm.add_parameter("Checkpoint interval", checkpoint_interval, "Time between checkpoints. In this version 0: none.", Double(0.));
+    prm.add_parameter("Checkpoint interval",
+                      checkpoint_interval,
+                      "Time between checkpoints, from which --resume goes on with a run; the last two are kept. 0: none but those below and those asked for (doc/restart.md).",
+                      Double(0.));
+    prm.add_parameter("Checkpoint wall interval", checkpoint_wall_interval, "The same in seconds of the clock; 0: none.", Double(0.));
     prm.leave_subsection();
-  }
-
-  void
-  OutputParameters::check() const
-  {
-    std::ostringstream message;
-    if (checkpoint_interval > 0.)
-      message << "Output/Checkpoint interval is " << checkpoint_interval << "; not available in this version, allowed: 0";
-    if (!message.str().empty())
-      throw InputError(message.str());
   }
 } // namespace tanktread

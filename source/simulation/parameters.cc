@@ -205,7 +205,6 @@ namespace tanktread
     collect([&] { check_shell_mesh(*this); });
     collect([&] { check_solver(scene, solver); });
     collect([&] { fluid_mesh.check(scene.box()); });
-    collect([&] { output.check(); });
     collect([&] { check_study(*this); });
     collect([&] { check_output_folder(output.directory); });
     if (!errors.empty())

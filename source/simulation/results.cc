@@ -146,27 +146,80 @@ namespace tanktread
     , shell_series_(folder + "/shell.pvd")
     , fluid_series_(folder + "/fluid.pvd")
   {
-    for (unsigned int k = 0; k < layout.capsules().n_kinds(); ++k)
-      {
-        surface_pictures_.emplace_back(layout.capsules().kind(k).topology(), surface_subdivisions);
-        contour_pictures_.emplace_back(layout.capsules().kind(k).topology(), contour_subdivisions);
-      }
+    set_pictures(surface_subdivisions);
     on_first_rank(communicator_, [&] {
-      std::vector<std::string> columns = names(history_row({}, {})), of_contours = {"time", "x", "z"};
-      const unsigned int       n_files = n_capsules_ > most_files ? 1 : n_capsules_;
-      if (n_files < n_capsules_)
-        {
-          columns.push_back("capsule");
-          of_contours.push_back("capsule");
-        }
-      for (unsigned int c = 0; c < n_files; ++c)
-        {
-          const std::string end = suffix(c, n_files) + ".csv";
-          histories_.push_back(std::make_unique<CsvWriter>(folder + "/history" + end, columns));
-          contours_.push_back(std::make_unique<CsvWriter>(folder + "/contours" + end, of_contours));
-        }
-      suspension_ = std::make_unique<CsvWriter>(folder + "/suspension.csv", names(suspension_row({}, {})));
+      open_tables([](const std::string &file, const std::vector<std::string> &columns) { return std::make_unique<CsvWriter>(file, columns); });
     });
+  }
+
+
+  Results::Results(const std::string &folder, const ShellLayout &layout, const unsigned int surface_subdivisions, const OutputProgress &progress)
+    : folder_(folder)
+    , layout_(layout)
+    , communicator_(layout.communicator())
+    , n_capsules_(layout.n_capsules())
+    , shell_series_(folder + "/shell.pvd")
+    , fluid_series_(folder + "/fluid.pvd")
+  {
+    set_pictures(surface_subdivisions);
+    on_first_rank(communicator_, [&] {
+      std::size_t next = 0;
+      open_tables([&](const std::string &file, const std::vector<std::string> &columns) {
+        return std::make_unique<CsvWriter>(file, columns, std::streamoff(progress.tables.at(next++)));
+      });
+      shell_series_.set_entries(progress.shell_files);
+      fluid_series_.set_entries(progress.fluid_files);
+    });
+    n_fields_ = dealii::Utilities::MPI::broadcast(communicator_, progress.n_fields);
+  }
+
+
+  void
+  Results::set_pictures(const unsigned int surface_subdivisions)
+  {
+    for (unsigned int k = 0; k < layout_.capsules().n_kinds(); ++k)
+      {
+        surface_pictures_.emplace_back(layout_.capsules().kind(k).topology(), surface_subdivisions);
+        contour_pictures_.emplace_back(layout_.capsules().kind(k).topology(), contour_subdivisions);
+      }
+  }
+
+
+  template <typename Function>
+  void
+  Results::open_tables(const Function &table)
+  {
+    std::vector<std::string> columns = names(history_row({}, {})), of_contours = {"time", "x", "z"};
+    const unsigned int       n_files = n_capsules_ > most_files ? 1 : n_capsules_;
+    if (n_files < n_capsules_)
+      {
+        columns.push_back("capsule");
+        of_contours.push_back("capsule");
+      }
+    for (unsigned int c = 0; c < n_files; ++c)
+      {
+        const std::string end = suffix(c, n_files) + ".csv";
+        histories_.push_back(table(folder_ + "/history" + end, columns));
+        contours_.push_back(table(folder_ + "/contours" + end, of_contours));
+      }
+    suspension_ = table(folder_ + "/suspension.csv", names(suspension_row({}, {})));
+  }
+
+
+  OutputProgress
+  Results::progress() const
+  {
+    OutputProgress result;
+    if (!suspension_)
+      return result;
+    for (std::size_t c = 0; c < histories_.size(); ++c)
+      for (const auto *const files : {&histories_, &contours_})
+        result.tables.push_back((*files)[c]->written());
+    result.tables.push_back(suspension_->written());
+    result.n_fields    = n_fields_;
+    result.shell_files = shell_series_.entries();
+    result.fluid_files = fluid_series_.entries();
+    return result;
   }
 
 

@@ -9,12 +9,14 @@
 #include <tanktread/base/number_text.h>
 #include <tanktread/base/output_file.h>
 #include <tanktread/base/output_folder.h>
+#include <tanktread/base/version.h>
 #include <tanktread/simulation/scene_description.h>
 #include <tanktread/simulation/simulation.h>
 #include <tanktread/solver/team_choice.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <sstream>
 #include <utility>
@@ -116,8 +118,10 @@ namespace tanktread
     , stepper_(parameters.time, parameters.solver.coupling, parameters.scene.end_time, scene_, memory_.steps, log_, parameters.control_mesh_stays_even())
     , state_(scene_.initial_state())
     , resolution_(parameters, scene_, memory_.warnings, log_)
+    , checkpoints_(parameters, communicator, log_)
   {
-    memory_.next_fields = parameters.output.field_interval;
+    memory_.next_fields     = parameters.output.field_interval;
+    memory_.next_checkpoint = parameters.output.checkpoint_interval;
     stepper_.start(memory_.time, positions(state_));
   }
 
@@ -142,6 +146,8 @@ namespace tanktread
       return;
     const CapsuleMoves moves(scene_.layout(), team_of);
     stepper_.reassign(moves, state_);
+    for (ShellFields &x : scene_.mesh_shells())
+      x = moves.moved(x);
     memory_.capsules = moves.moved(memory_.capsules);
     scene_.reassign(team_of);
     scene_.level().move_points(state_);
@@ -246,16 +252,23 @@ namespace tanktread
   StepResult
   Simulation::step()
   {
-    constexpr std::size_t    max_meshes = 4; // three stages that end apart, and one that first was not where it is on finer cells
+    constexpr std::size_t max_meshes = 4; // three stages that end apart, and one that first was not where it is on finer cells
+    unsigned int          remeshing  = 0;
+    if (const std::vector<ShellFields> predicted = stepper_.predicted(state_, memory_.time); !scene_.covers(state_, predicted))
+      {
+        remeshing = refine_around_shells(predicted);
+        settle_owners();
+      }
     std::vector<ShellFields> ends;
     StepResult               result = stepper_.step(state_, memory_.time, false);
+    result.linear_iterations += remeshing;
     while (result.beyond_mesh)
       {
         ends.push_back(*result.beyond_mesh);
         log_.line("Step of length " + number_text(result.length) + " repeated on a mesh around its " + (ends.size() == 1 ? "end" : "stages and its end") +
                   " too: the shells have left the finest cells.");
-        const unsigned int remeshing = refine_around_shells(ends);
-        StepResult         again     = stepper_.step(state_, memory_.time, ends.size() == max_meshes);
+        remeshing        = refine_around_shells(ends);
+        StepResult again = stepper_.step(state_, memory_.time, ends.size() == max_meshes);
         again.newton_iterations += result.newton_iterations;
         again.linear_iterations += result.linear_iterations + remeshing;
         result = std::move(again);
@@ -264,15 +277,43 @@ namespace tanktread
   }
 
 
+  void
+  Simulation::go_on(Checkpoints::Found found)
+  {
+    const std::string folder = parameters_.output.directory;
+    checkpoints_.forget_after(found.step);
+    on_first_rank(communicator_, [&] {
+      std::error_code ignored;
+      std::filesystem::remove(folder + "/stop", ignored);
+      log_.reopen(folder + "/log.txt", found.log_size);
+      replace_file(folder + "/used_parameters.prm", parameters_.used);
+    });
+    log_.line("Resumed at time " + number_text(found.time) + ", step " + std::to_string(found.step) + ", from " + folder + "/checkpoints/" + found.name +
+              " on " + std::to_string(dealii::Utilities::MPI::n_mpi_processes(communicator_)) + " rank(s), " + program_version() + ".");
+    results_ = std::make_unique<Results>(folder, scene_.layout(), parameters_.output.surface_subdivisions, found.progress);
+    restore({scene_, memory_, state_}, std::move(found.snapshot));
+  }
+
+
+  bool
+  Simulation::save(const bool last)
+  {
+    const Request request  = checkpoints_.wanted();
+    const double  interval = parameters_.output.checkpoint_interval;
+    const bool    due      = interval > 0. && (is_due(memory_.next_checkpoint, interval) || last); // a run that has ended can be made longer
+    if (request == Request::none && !due)
+      return false;
+    return checkpoints_.write({scene_, memory_, state_}, results_->progress()) && request == Request::stop;
+  }
+
+
   std::string
   Simulation::advance()
   {
-    start();
     bool steady = false, known = false;
-    for (bool last = parameters_.scene.end_time <= 0.; !last;)
+    for (bool last = memory_.time >= parameters_.scene.end_time - rounding(); !last;)
       {
         StepResult result = step();
-        result.linear_iterations += std::exchange(memory_.remeshing_iterations, 0);
         memory_.time += result.length;
         ++memory_.n_steps;
         steady                  = is_steady(result.length);
@@ -284,24 +325,35 @@ namespace tanktread
           log_.line("Steady: axes and inclination have changed slower than Time/Steady tolerance in three steps.");
         if (known)
           log_.line("Steady: what the shape relaxes to has been known to Time/Limit tolerance in three steps.");
-        if (!last && !scene_.covers(state_))
+        if (save(last) && !last)
           {
-            memory_.remeshing_iterations = refine_around_shells();
-            settle_owners();
+            log_.line("Stopped as asked for; --resume goes on from here.");
+            return "stopped";
           }
       }
     return steady || known ? "steady" : "done";
   }
 
 
-  void
-  Simulation::run()
+  std::string
+  Simulation::run(const bool resume)
   {
     const Meeting meeting(communicator_);
-    make_folder();
+    std::string   outcome;
+    auto          found = resume ? checkpoints_.find() : std::nullopt;
+    if (!found)
+      {
+        if (resume)
+          log_.line("There is no checkpoint to resume from in " + parameters_.output.directory + ": the run starts from the beginning.");
+        make_folder();
+      }
     try
       {
-        const std::string outcome = advance();
+        if (found)
+          go_on(std::move(*found));
+        else
+          start();
+        outcome = advance();
         summarise(outcome);
       }
     catch (const NumericalError &error)
@@ -316,5 +368,6 @@ namespace tanktread
         throw NumericalError(reason);
       }
     log_.timings(scene_.timings());
+    return outcome;
   }
 } // namespace tanktread

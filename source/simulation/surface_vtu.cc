@@ -126,9 +126,9 @@ namespace tanktread
   void
   PvdFile::add(const double time, const std::string &data_file)
   {
-    entries.emplace_back(time, data_file);
+    all_entries.emplace_back(time, data_file);
     std::ostringstream out;
-    dealii::DataOutBase::write_pvd_record(out, entries);
+    dealii::DataOutBase::write_pvd_record(out, all_entries);
     replace_file(file, out.str());
   }
 } // namespace tanktread

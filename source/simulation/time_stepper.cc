@@ -227,6 +227,37 @@ namespace tanktread
   }
 
 
+  std::vector<ShellFields>
+  TimeStepper::predicted(const State &state, const double time)
+  {
+    if (coupling_ == TimeCoupling::explicit_euler)
+      return {};
+    // Capsules travel steadily; what a stiff shell does in a step cannot be told from its velocity.
+    const double      length = next_length(state, time);
+    ShellFields       result = positions(state);
+    const ShellFields undisturbed =
+      memory_.previous.empty() ? scene_.coupling().undisturbed_velocity(scene_.level().flow(), scene_.level().shells(state)) : ShellFields();
+    for (std::size_t c = 0; c < result.size(); ++c)
+      {
+        const Eigen::RowVector3d velocity =
+          memory_.previous.empty() ?
+            Eigen::RowVector3d(undisturbed[c].colwise().mean()) :
+            Eigen::RowVector3d((result[c] - memory_.previous.front().state.capsules[c].x).colwise().mean() / (time - memory_.previous.front().time));
+        result[c].rowwise() += length * velocity;
+      }
+    if (!scene_.contains(result))
+      return {};
+    return {result};
+  }
+
+
+  double
+  TimeStepper::next_length(const State &state, const double time) const
+  {
+    return std::min({memory_.next_length, longest_step(state), end_time_ - time, longest_start(state)});
+  }
+
+
   double
   TimeStepper::longest_start(const State &state) const
   {
@@ -247,11 +278,10 @@ namespace tanktread
   StepResult
   TimeStepper::implicit_step(State &state, const double time, const bool last_mesh)
   {
-    StepResult   result;
-    State        next;
-    const double start  = longest_start(state);
-    memory_.shortest    = std::min({memory_.shortest, 1e-3 * parameters_.step, 0.05 * start});
-    const double wanted = std::min({memory_.next_length, longest_step(state), end_time_ - time, start}), shortest = std::min(wanted, memory_.shortest);
+    StepResult result;
+    State      next;
+    memory_.shortest    = std::min({memory_.shortest, 1e-3 * parameters_.step, 0.05 * longest_start(state)});
+    const double wanted = next_length(state, time), shortest = std::min(wanted, memory_.shortest);
     bool         first_attempt = true;
     std::string  failure;
     const auto   reference = first_step_by_second_order(state, time, wanted, result);

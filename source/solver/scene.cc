@@ -67,28 +67,60 @@ namespace tanktread
   }
 
 
-  void
-  Scene::refine_around(const State &state, const std::vector<ShellFields> &others)
+  Scene::Surroundings
+  Scene::surroundings(const State &state, const std::vector<ShellFields> &others)
   {
-    const Timings::Scope          scope(timings_, "Fluid mesh and multigrid");
-    std::vector<dealii::Point<3>> points;
-    double                        film = thinnest_film(level_.shells(state));
+    Surroundings result;
+    result.film = thinnest_film(level_.shells(state));
     on_all_ranks(communicator_, [&] {
       if (layout_.leads())
-        points = Coupling::points(level_.shells(state));
+        result.points = Coupling::points(level_.shells(state));
     });
     for (const ShellFields &x : others)
       {
         ShellConfigurations shells;
         for (unsigned int i = 0; i < x.size(); ++i)
           shells.push_back(std::make_shared<ShellConfiguration>(capsule(i), x[i]));
-        const std::vector<dealii::Point<3>> further = Coupling::points(shells);
-        film                                        = std::min(film, thinnest_film(shells));
-        if (layout_.leads())
-          points.insert(points.end(), further.begin(), further.end());
+        if (const double film = thinnest_film(shells); film > 0.) // predicted ones may overlap
+          result.film = std::min(result.film, film);
+        on_all_ranks(communicator_, [&] {
+          if (!layout_.leads())
+            return;
+          const std::vector<dealii::Point<3>> further = Coupling::points(shells);
+          result.points.insert(result.points.end(), further.begin(), further.end());
+        });
       }
-    fluid_.adapt(points, film);
+    return result;
+  }
+
+
+  void
+  Scene::refine_around(const State &state, const std::vector<ShellFields> &others)
+  {
+    const Timings::Scope scope(timings_, "Fluid mesh and multigrid");
+    const Surroundings   near = surroundings(state, others);
+    if (fluid_.adapt(near.points, near.film))
+      {
+        mesh_shells_ = {positions(state)};
+        mesh_shells_.insert(mesh_shells_.end(), others.begin(), others.end());
+      }
     level_.attach(fluid_);
+  }
+
+
+  void
+  Scene::restore_mesh(std::vector<ShellFields> shells, const unsigned int finest_level)
+  {
+    const Timings::Scope scope(timings_, "Fluid mesh and multigrid");
+    State                first;
+    for (const ControlPoints &x : shells.at(0))
+      {
+        first.capsules.emplace_back();
+        first.capsules.back().x = x;
+      }
+    fluid_.adapt_to_level(surroundings(first, {shells.begin() + 1, shells.end()}).points, finest_level);
+    level_.attach(fluid_);
+    mesh_shells_ = std::move(shells);
   }
 
 
@@ -103,10 +135,20 @@ namespace tanktread
 
 
   bool
-  Scene::covers(const State &state)
+  Scene::covers(const State &state, const std::vector<ShellFields> &others)
   {
-    const std::vector<dealii::Point<3>> points = layout_.leads() ? Coupling::points(level_.shells(state)) : std::vector<dealii::Point<3>>();
-    return fluid_.mesh().suits(thinnest_film(level_.shells(state))) && fluid_.mesh().covers(points, coupling_.knows_motion() ? 0.5 : 1.);
+    const Surroundings near = surroundings(state, others);
+    return fluid_.mesh().suits(near.film) && fluid_.mesh().covers(near.points, coupling_.knows_motion() ? 0.5 : 1.);
+  }
+
+
+  bool
+  Scene::contains(const ShellFields &x) const
+  {
+    ShellConfigurations shells;
+    for (unsigned int i = 0; i < x.size(); ++i)
+      shells.push_back(std::make_shared<ShellConfiguration>(capsule(i), x[i]));
+    return distance_from_faces(shells) > 0.;
   }
 
 

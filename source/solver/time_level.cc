@@ -142,6 +142,23 @@ namespace tanktread
   }
 
 
+  void
+  TimeLevel::restore_viscosities(const ShellFields &preconditioner_x, const ShellFields &viscosity_x)
+  {
+    for (const ShellFields &x : {preconditioner_x, viscosity_x})
+      {
+        State there;
+        for (const ControlPoints &of_shell : x)
+          {
+            there.capsules.emplace_back();
+            there.capsules.back().x = of_shell;
+          }
+        if (coupling_.layout().max(double(x.size())) > 0.)
+          set_viscosity(there);
+      }
+  }
+
+
   double
   TimeLevel::viscosity_distance(const State &state) const
   {

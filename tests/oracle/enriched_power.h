@@ -147,8 +147,9 @@ namespace tanktread::oracle
               sum[3] += weight * f_n;
             }
         }
+      const double h = mesh.cell_size(mesh.finest_level());
       for (auto &[position, sum] : shell.forces)
-        sum /= areas[position];
+        sum /= std::max(areas[position], 0.05 * h * h);
     }
 
     static Eigen::RowVector4d

@@ -89,12 +89,6 @@ CASES = {
         1,
         ["case.prm:2: Scene/Shear number G = -1; allowed: a number > 0", "case.prm:3: unknown parameter"],
     ),
-    "not_available": (
-        section("Output", "set Checkpoint interval = 5"),
-        ["case.prm"],
-        1,
-        ["case.prm:2: Output/Checkpoint interval is 5; not available in this version, allowed: 0"],
-    ),
     "thick_skalak": (
         section("Capsule", "set Membrane law = Skalak", "set Thickness = 0.1"),
         ["case.prm"],

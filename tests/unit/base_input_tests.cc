@@ -293,7 +293,7 @@ TEST(CommandLine, NamesWhatIsWrong)
   EXPECT_NE(command_line_error({"--valdate", "x.prm"}).find("unknown option \"--valdate\"; did you mean \"--validate\"?"), std::string::npos);
   EXPECT_NE(command_line_error({"--set"}).find("--set needs a value"), std::string::npos);
   EXPECT_NE(command_line_error({"--set", "--validate", "x.prm"}).find("--set needs a value"), std::string::npos);
-  EXPECT_NE(command_line_error({"--resume", "x.prm"}).find("not available"), std::string::npos);
+  EXPECT_NE(command_line_error({"--resume", "--validate", "x.prm"}).find("--resume is for a run"), std::string::npos);
   EXPECT_NE(command_line_error({"a.prm", "b.prm"}).find("more than one"), std::string::npos);
   EXPECT_NE(command_line_error({}).find("no parameter file"), std::string::npos);
   EXPECT_NE(command_line_error({"--validate"}).find("no parameter file"), std::string::npos);

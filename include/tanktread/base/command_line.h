@@ -25,6 +25,7 @@ namespace tanktread
     Action                   action = Action::run;
     std::string              file;      // parameter file; empty for the actions that need none
     std::vector<std::string> overrides; // texts of --set: "Section/Parameter=value"
+    bool                     resume = false;
   };
 
   /**

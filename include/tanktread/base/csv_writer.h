@@ -21,6 +21,18 @@ namespace tanktread
     CsvWriter(const std::string &file_name, const std::vector<std::string> &names, bool active = true);
 
     /**
+     * Goes on with `file_name`, cut off after its first `size` bytes. @throws OutputError when that cannot be done, InputError where the file has other columns or is shorter.
+     */
+    CsvWriter(const std::string &file_name, const std::vector<std::string> &names, std::streamoff size);
+
+    /** Bytes of the whole rows. */
+    std::streamoff
+    written() const
+    {
+      return size;
+    }
+
+    /**
      * Writes one row; `values` has one entry for each name.
      * @throws std::logic_error for another number of values, OutputError when writing fails (a full disk); the file then ends with the last whole row.
      */

@@ -64,6 +64,14 @@ namespace tanktread
     void
     open(const std::string &file_name);
 
+    /** The same for the log of a run that goes on, cut off after its first `size` bytes. */
+    void
+    reopen(const std::string &file_name, std::streamoff size);
+
+    /** Bytes of the file. */
+    std::streamoff
+    written();
+
     /** Versions, ranks, date, scales and what the scene leaves out. */
     void
     header(const RunDescription &run);

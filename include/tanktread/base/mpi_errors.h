@@ -43,7 +43,7 @@ namespace tanktread
     all_come(double patience = 10.) const;
 
   private:
-    MPI_Comm     communicator_;    // of its own: the ranks that have not failed may be inside a collective call of the other one
+    MPI_Comm     communicator_;   // of its own: the ranks that have not failed may be inside a collective call of the other one
     mutable bool missed_ = false; // then it must not be freed, which takes all ranks
   };
 

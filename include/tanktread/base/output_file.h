@@ -4,6 +4,7 @@
 #ifndef tanktread_base_output_file_h
 #define tanktread_base_output_file_h
 
+#include <fstream>
 #include <string>
 
 namespace tanktread
@@ -14,6 +15,10 @@ namespace tanktread
    */
   void
   replace_file(const std::string &file, const std::string &content);
+
+  /** Cuts a file off after its first `size` bytes and opens it to go on from there. @throws OutputError. */
+  void
+  cut_and_open(std::ofstream &stream, const std::string &file, std::streamoff size);
 
   /** "cannot write FILE: REASON"; the reason is what `error`, a value of errno, stands for, none for zero. */
   std::string

@@ -47,9 +47,11 @@ namespace tanktread
 
     Timings();
 
-    /** Seconds since construction. */
+    /** Seconds since construction, and those of before if the run is one that goes on. */
     double
     elapsed() const;
+    void
+    add_before(double seconds);
 
     /** All parts, in the order of their first use. */
     const std::vector<Part> &
@@ -75,6 +77,7 @@ namespace tanktread
     find_or_add(const std::string &name);
 
     std::chrono::steady_clock::time_point start;
+    double                                before = 0.;
     std::vector<Part>                     all_parts;
   };
 } // namespace tanktread

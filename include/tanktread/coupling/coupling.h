@@ -14,6 +14,7 @@
 
 #include <array>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace tanktread
@@ -91,6 +92,12 @@ namespace tanktread
     jumps() const
     {
       return *jumps_;
+    }
+    /** Those that jumps() has told of, on the same mesh; to be followed by move(). */
+    void
+    set_viscous_forces(ShellJumps::ViscousForces forces)
+    {
+      jumps_->set_viscous_forces(std::move(forces));
     }
     /** Whether J and R know how they change with the position of the points: not with jumps in the cells. */
     bool

@@ -83,6 +83,21 @@ namespace tanktread
     void
     update_viscous_forces(const std::vector<double> &gradients, const std::vector<double> &laplacians, const ExtendedForces &forces);
 
+    /** The viscous forces of a flow, of all shells, and boxes about the shells then: what a run that goes on has to be given back. Not collective. */
+    struct ViscousForces
+    {
+      std::vector<JumpEnrichment::ViscousForce> at_vertices;
+      std::vector<ShellBox>                     boxes; // none before the first update
+    };
+    ViscousForces
+    viscous_forces() const
+    {
+      return {viscous_forces_, viscous_boxes_};
+    }
+    /** To be followed by move(). */
+    void
+    set_viscous_forces(ViscousForces forces);
+
     /** Adds what these changes of gradients and forces will change of them, to first order. Collective. */
     void
     add_viscous_change(const std::vector<double> &gradients, ExtendedForces &forces) const;
@@ -120,7 +135,7 @@ namespace tanktread
     set_colours(const std::vector<ShellBox> &boxes, const PointInterpolation &points);
     /** Gives those of the flow before to the colours that the shells have now. */
     void
-    set_viscous_forces();
+    give_viscous_forces();
     void
     set_sides();
 

@@ -43,21 +43,16 @@ namespace tanktread
     adapt(const std::vector<dealii::Point<3>> &points, const double film = std::numeric_limits<double>::infinity())
     {
       mesh_.choose_finest_level(film);
-      if (!mesh_.aim_at(points))
-        return false;
-      // What stands on the mesh must go before the mesh changes.
-      viscosity_.reset();
-      preconditioner_.reset();
-      stokes_.reset();
-      assembled_.reset();
-      space_.reset();
-      if (method_ == StokesMethod::assembled)
-        assemble();
-      else
-        make_matrix_free();
-      return true;
+      return rebuild(points);
     }
 
+    /** The same with finest cells of a level that choose_finest_level() had chosen. */
+    bool
+    adapt_to_level(const std::vector<dealii::Point<3>> &points, const unsigned int finest_level)
+    {
+      mesh_.set_finest_level(finest_level);
+      return rebuild(points);
+    }
     /**
      * One viscosity everywhere until this is called, and again after a change of mesh. Throws std::logic_error with assembled matrices, which are of one.
      * Collective.
@@ -121,6 +116,24 @@ namespace tanktread
     }
 
   private:
+    bool
+    rebuild(const std::vector<dealii::Point<3>> &points)
+    {
+      if (!mesh_.aim_at(points))
+        return false;
+      // What stands on the mesh must go before the mesh changes.
+      viscosity_.reset();
+      preconditioner_.reset();
+      stokes_.reset();
+      assembled_.reset();
+      space_.reset();
+      if (method_ == StokesMethod::assembled)
+        assemble();
+      else
+        make_matrix_free();
+      return true;
+    }
+
     static Multigrid<float>::Options
     linear_elements()
     {

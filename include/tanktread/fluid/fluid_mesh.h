@@ -56,6 +56,12 @@ namespace tanktread
      */
     void
     choose_finest_level(double gap);
+    /** One that has been chosen before. */
+    void
+    set_finest_level(const unsigned int level)
+    {
+      finest_level_ = level;
+    }
 
     /** Whether choose_finest_level() would leave the finest level as it is. */
     bool

@@ -11,6 +11,12 @@
 
 namespace tanktread
 {
+  /** All that a capsule's memory consists of, and back; the latter for the same capsule. */
+  std::vector<double>
+  packed(const CapsuleMemory &memory);
+  CapsuleMemory
+  unpacked(const std::vector<double> &numbers, const Capsule &capsule);
+
   /** A change of teams: sends things that belong to capsules from the teams that hold them to those that will. All members but the constructor are collective. */
   class CapsuleMoves
   {

@@ -22,6 +22,8 @@ namespace tanktread
     double      field_interval      = 1.; // 0: first and last only
     double      checkpoint_interval = 0.; // 0: none
 
+    double checkpoint_wall_interval = 1800.; // in seconds; 0: none
+
     unsigned int surface_subdivisions = 2; // n: 4^n triangles for each face of the control mesh
 
     std::set<double> contour_times;
@@ -29,10 +31,6 @@ namespace tanktread
     /** Declares section "Output" in `prm`; parsing fills this object, which has to outlive `prm`. */
     void
     add_parameters(dealii::ParameterHandler &prm);
-
-    /** @throws InputError for checkpoints, which this version has not. */
-    void
-    check() const;
   };
 } // namespace tanktread
 

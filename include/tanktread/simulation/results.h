@@ -11,12 +11,22 @@
 #include <tanktread/simulation/surface_vtu.h>
 #include <tanktread/surface/limit_picture.h>
 
+#include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tanktread
 {
+  /** How far the files of a run have got, on the first rank; nothing on the others. */
+  struct OutputProgress
+  {
+    std::vector<std::int64_t>                   tables; // bytes of history*.csv, contours*.csv, suspension.csv
+    unsigned int                                n_fields = 0;
+    std::vector<std::pair<double, std::string>> shell_files, fluid_files; // with their times
+  };
+
   /**
    * history.csv (one row a step), contours.csv (cuts parallel to the plane y = 0 through the middle of the capsule at each field output and when
    * asked for: time, x, z), both with _1, ..., _N in their names where there are N capsules; of more than `most_files` capsules one file of each with the column `capsule`, a row a capsule. suspension.csv (all
@@ -34,6 +44,12 @@ namespace tanktread
      * @param surface_subdivisions of the faces of control meshes in the files of the shells.
      */
     Results(const std::string &folder, const ShellLayout &layout, unsigned int surface_subdivisions);
+
+    /** Goes on with the files of a run, which are cut off where they were. Throws InputError too, where they are others. Collective. */
+    Results(const std::string &folder, const ShellLayout &layout, unsigned int surface_subdivisions, const OutputProgress &progress);
+
+    OutputProgress
+    progress() const;
 
     /** One number for each capsule of the scene and each column of history_row(), by capsules; the same on all ranks. */
     using History = std::vector<double>;
@@ -65,6 +81,12 @@ namespace tanktread
     write_failed(const State &state) const;
 
   private:
+    void
+    set_pictures(unsigned int surface_subdivisions);
+    /** Opens the tables by `table`(file, columns). On the first rank. */
+    template <typename Function>
+    void
+    open_tables(const Function &table);
     /** Writes `stem`.vtu, or pieces and `stem`.pvtu, in the folder. Returns the name without the folder. */
     std::string
     write_shells(const std::string &stem, const State &state, const ShellFields &velocities) const;

@@ -60,8 +60,7 @@ namespace tanktread
     StepMemory                 steps;
     unsigned int               n_quiet_steps        = 0; // in which the shapes have hardly changed, the last ones
     unsigned int               n_known_steps        = 0; // in which their limits were known to the tolerance, the last ones
-    unsigned int               remeshing_iterations = 0; // linear ones, for the flow on a new mesh, to be counted in the next step
-    double                     next_fields = 0., next_history = 0.;
+    double                     next_fields = 0., next_history = 0., next_checkpoint = 0.;
     WarningMemory              warnings;
     std::vector<CapsuleMemory> capsules; // from the first record on
   };

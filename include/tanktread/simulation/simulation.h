@@ -5,6 +5,7 @@
 #define tanktread_simulation_simulation_h
 
 #include <tanktread/base/log.h>
+#include <tanktread/simulation/checkpoints.h>
 #include <tanktread/simulation/parameters.h>
 #include <tanktread/simulation/resolution_monitor.h>
 #include <tanktread/simulation/results.h>
@@ -30,17 +31,25 @@ namespace tanktread
 
     /**
      * Makes the output folder and runs to the end time or the steady state. Throws NumericalError, after writing the last good state, when a step cannot be
-     * done.
+     * done. Returns the outcome: done, steady or stopped, the latter where a signal or a file had asked for it and a checkpoint has been written.
+     *
+     * @param resume whether to go on from the newest good checkpoint in the folder, if there is one. Throws InputError where the parameters are others.
      */
-    void
-    run();
+    std::string
+    run(bool resume = false);
 
   private:
     void
     make_folder();
+    /** Opens the files of the run that `found` is of, and gives it its state. */
+    void
+    go_on(Checkpoints::Found found);
     void
     start();
-    /** Steps to the end. Returns the outcome: done or steady. */
+    /** Writes a checkpoint if one is due or asked for. Returns whether the run has been asked to end, and can be resumed. */
+    bool
+    save(bool last);
+    /** Steps to the end. Returns the outcome: done, steady or stopped. */
     std::string
     advance();
     /** One step, on a mesh that it fits. */
@@ -101,6 +110,7 @@ namespace tanktread
     State                    state_;
     ResolutionMonitor        resolution_;
     std::unique_ptr<Results> results_;
+    Checkpoints              checkpoints_;
   };
 } // namespace tanktread
 

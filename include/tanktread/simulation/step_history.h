@@ -8,6 +8,7 @@
 #include <tanktread/simulation/time_stepping.h>
 
 #include <deque>
+#include <utility>
 #include <vector>
 
 namespace tanktread
@@ -45,6 +46,23 @@ namespace tanktread
     {
       for (Level &level : levels_)
         level.x = moved(level.x);
+    }
+
+    struct Level
+    {
+      double      time;
+      ShellFields x;
+    };
+    /** Newest first. */
+    const std::deque<Level> &
+    levels() const
+    {
+      return levels_;
+    }
+    void
+    set_levels(std::deque<Level> levels)
+    {
+      levels_ = std::move(levels);
     }
 
     /** Whether there is but one level. */
@@ -109,12 +127,6 @@ namespace tanktread
     /** Times of the last `n` levels, newest first, behind that of a new one. */
     std::vector<double>
     times(double length, std::size_t n) const;
-
-    struct Level
-    {
-      double      time;
-      ShellFields x;
-    };
 
     TimeParameters    parameters_;
     std::deque<Level> levels_; // newest first

@@ -47,9 +47,22 @@ namespace tanktread
     void
     add(double time, const std::string &data_file);
 
+    /** Times and data files. */
+    const std::vector<std::pair<double, std::string>> &
+    entries() const
+    {
+      return all_entries;
+    }
+    /** Those of a run that goes on; written with the next entry. */
+    void
+    set_entries(std::vector<std::pair<double, std::string>> entries)
+    {
+      all_entries = std::move(entries);
+    }
+
   private:
     std::string                                 file;
-    std::vector<std::pair<double, std::string>> entries; // time and data file
+    std::vector<std::pair<double, std::string>> all_entries;
   };
 } // namespace tanktread
 

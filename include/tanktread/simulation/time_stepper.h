@@ -64,6 +64,10 @@ namespace tanktread
     void
     refine_around(State &state, const std::vector<ShellFields> &others = {});
 
+    /** Where the shells will about be after the next step from `time`, carried on as they are: what the mesh is made for before it is taken. Nothing for explicit steps, whose flow is of the shells as they are, and where that is outside of the box. Collective. */
+    std::vector<ShellFields>
+    predicted(const State &state, double time);
+
     /** Sends what the levels before have of the capsules to their teams to come, and that of `state`. To be called before Scene::reassign(). */
     void
     reassign(const CapsuleMoves &moves, State &state);
@@ -88,6 +92,9 @@ namespace tanktread
     }
 
   private:
+    /** Of the next step's first attempt. */
+    double
+    next_length(const State &state, double time) const;
     /** With a tolerance, for the first step, whose error is not known: how long the shells take for a tenth of a at the speed that they themselves give the liquid at the start, root mean square. */
     double
     longest_start(const State &state) const;

@@ -71,16 +71,31 @@ namespace tanktread
     void
     refine_around(const State &state, const std::vector<ShellFields> &others = {});
 
+    /** The shells that the present mesh was made around, one set or several, of the rank's own capsules. */
+    std::vector<ShellFields> &
+    mesh_shells()
+    {
+      return mesh_shells_;
+    }
+
+    /** The mesh that was made around them, with finest cells of that level. Vectors are void. Collective. */
+    void
+    restore_mesh(std::vector<ShellFields> shells, unsigned int finest_level);
+
     /** Gives capsules to other teams, see ShellLayout::assign(). States are to be of the new own capsules from then on. */
     void
     reassign(const std::vector<unsigned int> &team_of);
 
     /**
-     * Whether the mesh will do for these shells: all cells near them are finest ones, within a finest cell with the enriched interface and half of one with the plain
+     * Whether the mesh will do for the shells of `state` and for others: all cells near them are finest ones, within a finest cell with the enriched interface and half of one with the plain
      * one, and finest cells are as small as `Finest cell in gaps` asks for between them, and no smaller.
      */
     bool
-    covers(const State &state);
+    covers(const State &state, const std::vector<ShellFields> &others = {});
+
+    /** Whether no face with prescribed velocity is met by shells with these control points. Collective. */
+    bool
+    contains(const ShellFields &x) const;
 
     /** Of the shells of `state`: within four finest cells to the accuracy of the surface. */
     ShellGap
@@ -158,6 +173,14 @@ namespace tanktread
     }
 
   private:
+    /** What a mesh has to do with: points of the coupling, on the ranks that lead teams, and the width of the thinnest film. */
+    struct Surroundings
+    {
+      std::vector<dealii::Point<3>> points;
+      double                        film;
+    };
+    Surroundings
+    surroundings(const State &state, const std::vector<ShellFields> &others);
     std::array<double, 3>
     periods() const;
 
@@ -180,6 +203,8 @@ namespace tanktread
     Coupling               coupling_;
     TimeLevel              level_;
     NewtonSolver           solver_;
+
+    std::vector<ShellFields> mesh_shells_;
   };
 } // namespace tanktread
 

@@ -111,6 +111,15 @@ namespace tanktread
     /** Viscosity of shells where the state has them, and the load of the undisturbed flow with it. Nothing with one viscosity. Collective. */
     void
     set_viscosity(const State &state);
+    /** Where the shells were when the preconditioner's viscosity was set. */
+    const ShellFields &
+    preconditioner_x() const
+    {
+      return preconditioner_x_;
+    }
+    /** Viscosities of shells where they were when they were set on this mesh, that of the preconditioner first; nothing where there were none. Collective. */
+    void
+    restore_viscosities(const ShellFields &preconditioner_x, const ShellFields &viscosity_x);
     /** How far the shells are from where the viscosity was set; zero with one viscosity. Collective. */
     double
     viscosity_distance(const State &state) const;
