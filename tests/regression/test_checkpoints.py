@@ -20,6 +20,14 @@ PROGRAM, SCENE, KILLS, SEED = "", "", 5, 1
 END, STEP, INTERVAL = 1., 0.05, 0.1  # of the runs below; a few hundredths of a second a step
 
 
+def parent_of(process):
+    """Number of the parent of a folder of /proc; 0 if it has gone."""
+    try:
+        return int((process / "stat").read_text().rsplit(")", 1)[1].split()[1])
+    except (OSError, IndexError, ValueError):
+        return 0
+
+
 class Restart(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -88,6 +96,21 @@ class Restart(unittest.TestCase):
                 n_killed += 1
         self.run_to_end(folder, "--resume")
         self.assert_whole(folder)
+
+    def test_a_rank_dies(self):
+        folder = self.folder("rank_dies")
+        process = subprocess.Popen(["mpirun", "--oversubscribe", "-np", "2", *self.command(folder)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+        until = time.monotonic() + 60
+        while len(self.checkpoints(folder)) < 2:
+            self.assertLess(time.monotonic(), until)
+            time.sleep(0.01)
+        ranks = [int(path.name) for path in pathlib.Path("/proc").glob("[0-9]*") if parent_of(path) == process.pid]
+        os.kill(ranks[-1], signal.SIGKILL)
+        said, _ = process.communicate(timeout=60)
+        self.assertNotEqual(process.returncode, 0, said)
+        self.assertIn("signal 9", said)
+        self.assertIn("Resumed at time", self.run_to_end(folder, "--resume"))
+        self.assertEqual(len(self.rows(folder)), len(self.rows(self.whole)))
 
     def test_killed_while_checkpoints_are_written(self):
         folder = self.folder("unfinished")
