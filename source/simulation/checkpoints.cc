@@ -76,7 +76,14 @@ namespace tanktread
     bool
     may_change(const Choice &choice)
     {
-      static const std::set<std::pair<std::string, std::string>> names = {{"Scene", "End time"}, {"Time", "Steady tolerance"}, {"Time", "Limit tolerance"}};
+      static const std::set<std::pair<std::string, std::string>> names = {{"Scene", "End time"},
+                                                                          {"Time", "Step"},
+                                                                          {"Time", "Tolerance"},
+                                                                          {"Time", "Steady tolerance"},
+                                                                          {"Time", "Limit tolerance"},
+                                                                          {"Solver", "Newton tolerance"},
+                                                                          {"Solver", "Linear tolerance"},
+                                                                          {"Solver", "Volume tolerance"}};
       return choice.section == "Output" || names.count({choice.section, choice.name}) > 0;
     }
 
@@ -130,7 +137,7 @@ namespace tanktread
     if (!errors.empty())
       throw InputError(
         "--resume: the run in \"" + parameters_.output.directory +
-        "\" was started with other parameters; a resumed one may change Output, Scene/End time, Time/Steady tolerance and Time/Limit tolerance." + errors);
+        "\" was started with other parameters; a resumed one may change Output, Scene/End time, Time/Step and the tolerances of Time and Solver." + errors);
   }
 
 

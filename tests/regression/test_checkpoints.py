@@ -234,6 +234,14 @@ class Restart(unittest.TestCase):
         self.assertIn("Time/Scheme: got BDF3; allowed: BDF2", said)
         self.assert_whole(folder)
 
+    def test_shorter_steps(self):
+        folder = self.copied("shorter")
+        shutil.rmtree(self.checkpoints(folder)[-1])
+        self.run_to_end(folder, "--resume", "--set", f"Time/Step={STEP / 2}")
+        rows = self.rows(folder)
+        self.assertEqual(rows[:20], self.rows(self.whole)[:20])
+        self.assertEqual([float(row[0]) for row in rows[20:]], [0.925, 0.95, 0.975, 1.])
+
     def test_of_a_study(self):
         said = self.run_to_end(self.folder("study"), "--resume", "--set", "Study/Vary=step", code=1)
         self.assertIn("--resume is for single runs", said)

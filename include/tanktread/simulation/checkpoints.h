@@ -36,8 +36,8 @@ namespace tanktread
     };
 
     /**
-     * The newest checkpoint that is whole; damaged ones are told of in the log and left alone. Nothing if there is none. Throws InputError, on all ranks, where a parameter other than those of the output and of
-     * the end has changed.
+     * The newest checkpoint that is whole; damaged ones are told of in the log and left alone. Nothing if there is none. Throws InputError, on all ranks, where a parameter has changed that may not,
+     * see doc/restart.md.
      */
     std::optional<Found>
     find();
