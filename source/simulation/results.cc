@@ -138,22 +138,7 @@ namespace tanktread
   } // namespace
 
 
-  Results::Results(const std::string &folder, const ShellLayout &layout, const unsigned int surface_subdivisions)
-    : folder_(folder)
-    , layout_(layout)
-    , communicator_(layout.communicator())
-    , n_capsules_(layout.n_capsules())
-    , shell_series_(folder + "/shell.pvd")
-    , fluid_series_(folder + "/fluid.pvd")
-  {
-    set_pictures(surface_subdivisions);
-    on_first_rank(communicator_, [&] {
-      open_tables([](const std::string &file, const std::vector<std::string> &columns) { return std::make_unique<CsvWriter>(file, columns); });
-    });
-  }
-
-
-  Results::Results(const std::string &folder, const ShellLayout &layout, const unsigned int surface_subdivisions, const OutputProgress &progress)
+  Results::Results(const std::string &folder, const ShellLayout &layout, const unsigned int surface_subdivisions, const OutputProgress *const progress)
     : folder_(folder)
     , layout_(layout)
     , communicator_(layout.communicator())
@@ -165,12 +150,16 @@ namespace tanktread
     on_first_rank(communicator_, [&] {
       std::size_t next = 0;
       open_tables([&](const std::string &file, const std::vector<std::string> &columns) {
-        return std::make_unique<CsvWriter>(file, columns, std::streamoff(progress.tables.at(next++)));
+        return progress == nullptr ? std::make_unique<CsvWriter>(file, columns)
+                                   : std::make_unique<CsvWriter>(file, columns, std::streamoff(progress->tables.at(next++)));
       });
-      shell_series_.set_entries(progress.shell_files);
-      fluid_series_.set_entries(progress.fluid_files);
+      if (progress == nullptr)
+        return;
+      shell_series_.set_entries(progress->shell_files);
+      fluid_series_.set_entries(progress->fluid_files);
+      n_fields_ = progress->n_fields;
     });
-    n_fields_ = dealii::Utilities::MPI::broadcast(communicator_, progress.n_fields);
+    n_fields_ = dealii::Utilities::MPI::broadcast(communicator_, n_fields_);
   }
 
 

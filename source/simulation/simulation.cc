@@ -290,7 +290,7 @@ namespace tanktread
     });
     log_.line("Resumed at time " + number_text(found.time) + ", step " + std::to_string(found.step) + ", from " + folder + "/checkpoints/" + found.name +
               " on " + std::to_string(dealii::Utilities::MPI::n_mpi_processes(communicator_)) + " rank(s), " + program_version() + ".");
-    results_ = std::make_unique<Results>(folder, scene_.layout(), parameters_.output.surface_subdivisions, found.progress);
+    results_ = std::make_unique<Results>(folder, scene_.layout(), parameters_.output.surface_subdivisions, &found.progress);
     restore({scene_, memory_, state_}, std::move(found.snapshot));
   }
 

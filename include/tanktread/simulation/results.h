@@ -41,12 +41,10 @@ namespace tanktread
     /**
      * The folder must exist. What cannot be written on a rank throws OutputError on all. Collective, as are all members. Keeps `layout` by reference.
      *
-     * @param surface_subdivisions of the faces of control meshes in the files of the shells.
+     * @param surface_subdivisions of the faces of control meshes in the files of the shells. @param progress of a run that goes on, whose files are cut off where they were then; InputError where they are
+     * others.
      */
-    Results(const std::string &folder, const ShellLayout &layout, unsigned int surface_subdivisions);
-
-    /** Goes on with the files of a run, which are cut off where they were. Throws InputError too, where they are others. Collective. */
-    Results(const std::string &folder, const ShellLayout &layout, unsigned int surface_subdivisions, const OutputProgress &progress);
+    Results(const std::string &folder, const ShellLayout &layout, unsigned int surface_subdivisions, const OutputProgress *progress = nullptr);
 
     OutputProgress
     progress() const;
