@@ -6,6 +6,7 @@
 
 #include <oracle/given_forces.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <vector>
